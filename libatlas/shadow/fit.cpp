@@ -35,17 +35,24 @@ double largest(const glm::dvec3& v) {
   return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)});
 }
 
+// Returns the direction of v, or NaN if v is zero or not finite. Divides by the largest coordinate
+// first, since the squares of very long and very short vectors leave the range of doubles.
+glm::dvec3 unit(const Vec3d& v) {
+  const glm::dvec3 d = to_glm(v);
+  return glm::normalize(d / largest(d));
+}
+
 // Unit vectors to the right and up in the map, and towards the light.
 struct Basis {
   glm::dvec3 right, up, back;
 };
 
 Basis light_basis(const glm::dvec3& direction, const Vec3d& wanted_up) {
-  glm::dvec3 up = to_glm(wanted_up);
+  glm::dvec3 up = unit(wanted_up);
   // If the light is within about 0.6 degrees of the wanted vertical, the right axis would mostly be
-  // rounding noise. The coordinate axis farthest from the light is then used as the vertical.
-  if (!(glm::length(glm::cross(up, direction)) >= 0.01 * glm::length(up)) ||
-      !(glm::length(up) > 0) || !is_finite(up)) {
+  // rounding noise. The coordinate axis farthest from the light is then used as the vertical, as it
+  // is if there is no wanted vertical (NaN fails the comparison).
+  if (!(glm::length(glm::cross(up, direction)) >= 0.01)) {
     const glm::dvec3 a = glm::abs(direction);
     up = a.x <= a.y && a.x <= a.z ? glm::dvec3(1, 0, 0)
                                   : (a.y <= a.z ? glm::dvec3(0, 1, 0) : glm::dvec3(0, 0, 1));
@@ -55,6 +62,28 @@ Basis light_basis(const glm::dvec3& direction, const Vec3d& wanted_up) {
   b.right = glm::normalize(glm::cross(up, direction));
   b.up = glm::cross(direction, b.right);
   return b;
+}
+
+// Returns the part of the map's side that is not border.
+double free_part(const LightFitOptions& options) {
+  return 1 - 2 * options.border_texels / options.resolution;
+}
+
+Status check(const glm::dvec3& low, const glm::dvec3& high, const LightFitOptions& options) {
+  if (!is_finite(low) || !is_finite(high) || low.x > high.x || low.y > high.y || low.z > high.z)
+    return {ErrorCode::bad_option, "shadow map: the scene's bounds are empty or not finite"};
+  // Squares of the coordinates are summed later and must not overflow.
+  constexpr double kFarthest = 1e150;
+  if (!(std::max(largest(low), largest(high)) <= kFarthest))
+    return {ErrorCode::bad_option, "shadow map: the scene's bounds reach beyond 1e150"};
+  if (!(options.border_texels >= 0))
+    return {ErrorCode::bad_option,
+            fmt::format("shadow map: a border of {} texels (0 or more)", options.border_texels)};
+  if (options.resolution < 1 || !(free_part(options) > 0))
+    return {ErrorCode::bad_option,
+            fmt::format("shadow map: {} texels a side are too few for a border of {} texels",
+                        options.resolution, options.border_texels)};
+  return {};
 }
 
 }  // namespace
@@ -78,34 +107,19 @@ Vec3d transform_vector(const Matrix4& m, const Vec3d& v) {
 }
 
 MapAxes map_axes(const Vec3d& direction, const Vec3d& up) {
-  const glm::dvec3 d = to_glm(direction);
-  const Basis basis = light_basis(d / std::hypot(d.x, d.y, d.z), up);
+  const Basis basis = light_basis(unit(direction), up);
   return {from_glm(basis.right), from_glm(basis.up)};
 }
 
 Result<LightFit> fit_light(const Vec3d& direction, const Box3& scene,
                            const LightFitOptions& options) {
   const glm::dvec3 low = to_glm(scene.low), high = to_glm(scene.high);
-  const double length = glm::length(to_glm(direction));
-  if (!(length > 0) || !std::isfinite(length))
+  const glm::dvec3 towards = unit(direction);
+  if (!is_finite(towards))
     return Status{ErrorCode::bad_option, "shadow map: the light's direction is zero or not finite"};
-  if (!is_finite(low) || !is_finite(high) || low.x > high.x || low.y > high.y || low.z > high.z)
-    return Status{ErrorCode::bad_option, "shadow map: the scene's bounds are empty or not finite"};
-  // Squares of the coordinates are summed below and must not overflow.
-  constexpr double kFarthest = 1e150;
-  if (!(std::max(largest(low), largest(high)) <= kFarthest))
-    return Status{ErrorCode::bad_option, "shadow map: the scene's bounds reach beyond 1e150"};
-  if (!(options.border_texels >= 0))
-    return Status{
-        ErrorCode::bad_option,
-        fmt::format("shadow map: a border of {} texels (0 or more)", options.border_texels)};
-  const double free = 1 - 2 * options.border_texels / options.resolution;
-  if (options.resolution < 1 || !(free > 0))
-    return Status{ErrorCode::bad_option,
-                  fmt::format("shadow map: {} texels a side are too few for a border of {} texels",
-                              options.resolution, options.border_texels)};
+  if (Status status = check(low, high, options); !status.ok()) return status;
 
-  const Basis basis = light_basis(to_glm(direction) / length, options.up);
+  const Basis basis = light_basis(towards, options.up);
   const Sphere whole = around(corners(scene));
   Sphere fitted = whole;
   if (options.view) {
@@ -117,11 +131,13 @@ Result<LightFit> fit_light(const Vec3d& direction, const Box3& scene,
                       fmt::format("shadow map: corner {} of the view is not finite", i)};
     }
     const Sphere view = around(points);
-    if (view.radius > 0 && is_finite(view.centre) && view.radius < whole.radius) fitted = view;
+    // The radius of a point is not always 0, since the mean of eight equal corners is rounded.
+    const double rounding = glm::length(view.centre) * 1e-9;
+    if (view.radius > rounding && view.radius < whole.radius) fitted = view;
   }
   // A scene of one point still needs a map of some size.
   const double smallest = std::max(glm::length(fitted.centre) * 1e-9, 1e-30);
-  double side = std::max(2 * fitted.radius, smallest) / free;
+  double side = std::max(2 * fitted.radius, smallest) / free_part(options);
   if (options.snap && options.view)
     side = std::exp2(std::ceil(std::log2(side) * 8) / 8);  // steps of 9 %: steady while zooming
   const double texel = side / options.resolution;

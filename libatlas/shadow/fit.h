@@ -21,8 +21,8 @@ struct LightFitOptions {
   Vec3d up{0, 1, 0};         // the map's vertical, unless it is zero, not finite or along the light
   bool snap = true;          // move the map by whole texels: edges do not crawl with the camera
   double border_texels = 4;  // free texels around the fitted part, for filters that look beside it
-  // If `view` is true, the map covers the part of the view with these eight corners. Otherwise it
-  // covers the whole scene.
+  // If `view` is true, the map covers the part of the view with these eight corners. Otherwise, and
+  // if that part is a point or larger than the scene, it covers the whole scene.
   bool view = false;
   std::array<Vec3d, 8> view_corners{};
 };

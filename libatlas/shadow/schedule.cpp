@@ -98,9 +98,10 @@ void KeySchedule::begin_interval(const Vec3d& now, const Ahead& ahead) {
   coming_ = to_;
   coming_needs_work_ = false;
   next_length_ = interval_from(length_, ahead);
-  // If the light jumps before the interval ends, everything will be refreshed. Nothing that was
-  // drawn now would be sampled.
-  for (int n = 0; ahead && n < length_; ++n)
+  // If the light jumps before the interval ends or in the frame after it, everything will be
+  // refreshed. Nothing that was drawn now would be sampled, or only by frames before a jump that
+  // comes late, where it would be wrong.
+  for (int n = 0; ahead && n <= length_; ++n)
     if (degrees_between(ahead(n), ahead(n + 1)) > options_.jump_degrees) return;
   const Vec3d target = ahead ? ahead(length_ + next_length_) : now;
   coming_needs_work_ = !same(target, to_.direction);
@@ -112,8 +113,9 @@ FramePlan KeySchedule::next_unblended(const Vec3d& now) {
   plan.refreshed = !valid_ || degrees_between(last_, now) > options_.jump_degrees;
   const bool by_degrees = options_.interval_degrees > 0;
   const bool late = ++frame_ >= (by_degrees ? options_.max_frames : options_.interval_frames);
-  const bool far =
-      by_degrees && degrees_between(from_.direction, now) >= options_.interval_degrees * (1 - 1e-9);
+  const double most = options_.max_key_degrees;
+  const double limit = by_degrees ? std::min(options_.interval_degrees, most) : most;
+  const bool far = degrees_between(from_.direction, now) >= limit * (1 - 1e-9);
   if (plan.refreshed || ((late || far) && !same(from_.direction, now))) {
     from_ = {0, now};
     draw_whole(0, now, plan);

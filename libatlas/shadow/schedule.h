@@ -24,7 +24,8 @@ struct ScheduleOptions {
   int max_frames = 64;          // longest interval if interval_degrees is used, >= 1
   // Keys are at most this far apart, in (0, kMaxKeyDegrees], even if that leaves few frames between
   // them. With a fast light, or on a slow machine, a frame then draws a larger part of a map. The
-  // alternative would be shadows interpolated over half the sky.
+  // alternative would be shadows interpolated over half the sky. If only the last map is sampled,
+  // it is drawn anew as soon as the light is this far from it.
   double max_key_degrees = kMaxKeyDegrees;
   bool blend = true;         // a frame samples two keys; false: it samples the last one only
   bool sliced = true;        // each map is drawn over the interval; false: one frame draws it all
@@ -44,7 +45,7 @@ struct FramePlan {
   std::vector<MapWork> work;  // to be done before the frame samples anything
   int from = 0, to = 0;       // slots to sample; equal if one map is enough
   Vec3d from_direction, to_direction;
-  double t = 0;            // position in time between the two keys, [0, 1)
+  double t = 0;            // position in time between the two keys, [0, 1); 0 for one map
   bool refreshed = false;  // maps were drawn at once: first frame, jump or invalidate()
 };
 

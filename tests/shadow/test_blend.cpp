@@ -100,8 +100,12 @@ TEST(Blend, AnglesNearZeroAndPi) {
   EXPECT_NEAR(angle_between({1, 0, 0}, {-5, 0, 0}), kPi, 1e-15);
   EXPECT_NEAR(angle_between({1, 0, 0}, {1, 1e-9, 0}), 1e-9, 1e-15);
   EXPECT_NEAR(angle_between({1, 0, 0}, {-1, 1e-9, 0}), kPi - 1e-9, 1e-15);
-  EXPECT_EQ(angle_between({0, 0, 0}, {1, 0, 0}), 0);
-  EXPECT_EQ(angle_between({kNan, 0, 0}, {1, 0, 0}), 0);
+  const double infinity = std::numeric_limits<double>::infinity();
+  for (const Vec3d& bad :
+       {Vec3d{0, 0, 0}, Vec3d{kNan, 0, 0}, Vec3d{0, infinity, 0}, Vec3d{1, 1, kNan}}) {
+    EXPECT_EQ(angle_between(bad, {1, 0, 0}), 0);
+    EXPECT_EQ(angle_between({1, 0, 0}, bad), 0);
+  }
   EXPECT_NEAR(angle_between({1e-200, 0, 0}, {0, 1e200, 0}), kPi / 2, 1e-12);
 }
 

@@ -1,18 +1,18 @@
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
+#include <limits>
 #include <random>
 #include <set>
 
 #include "libatlas/shadow/fit.h"
+#include "tests/shadow/directions.h"
 
 namespace atlas {
 namespace {
 
-Vec3d random_direction(std::mt19937& rng) {
-  std::normal_distribution<double> n;
-  return {n(rng), n(rng), n(rng)};
-}
+using test::random_direction;
 
 TEST(Fit, EveryPointOfTheSceneIsInTheMapForEveryLight) {
   std::mt19937 rng(7);
@@ -174,14 +174,159 @@ TEST(Fit, AnyVerticalWillDo) {
   }
 }
 
+// Returns the cube of the given reach around a centre, as the corners of a view.
+std::array<Vec3d, 8> cube(const Vec3d& at, double reach) {
+  std::array<Vec3d, 8> corners;
+  for (int c = 0; c < 8; ++c)
+    corners[c] = {at.x + (c & 1 ? reach : -reach), at.y + (c & 2 ? reach : -reach),
+                  at.z + (c & 4 ? reach : -reach)};
+  return corners;
+}
+
+Vec3d sum(const Vec3d& a, const Vec3d& b) {
+  return {a.x + b.x, a.y + b.y, a.z + b.z};
+}
+
+// Such a view would only waste texels, or have none.
+TEST(Fit, AViewThatIsLargerThanTheSceneOrAPointIsNotUsed) {
+  std::mt19937 rng(16);
+  const Box3 box{{0, 0, 0}, {3, 2, 7}};
+  for (int i = 0; i < 20; ++i) {
+    const Vec3d light = random_direction(rng), at = random_direction(rng);
+    LightFitOptions o;
+    o.snap = false;
+    const Matrix4 whole = fit_light(light, box, o)->to_texture;
+    o.view = true;
+    o.view_corners = cube(at, 0.5);
+    EXPECT_NE(fit_light(light, box, o)->to_texture, whole);
+    for (const double reach : {0.0, 10.0, 1e200}) {
+      o.view_corners = cube(at, reach);
+      EXPECT_EQ(fit_light(light, box, o)->to_texture, whole) << reach;
+    }
+  }
+}
+
+// The position of a scene in its world is arbitrary, so the map must look the same everywhere.
+TEST(Fit, TheMapMovesWithTheScene) {
+  std::mt19937 rng(17);
+  const Box3 box{{0, 0, 0}, {30, 20, 70}};
+  for (const bool view : {false, true})
+    for (int i = 0; i < 50; ++i) {
+      const Vec3d light = random_direction(rng), step = random_direction(rng);
+      const Vec3d away{1000 * step.x, 1000 * step.y, 1000 * step.z};
+      LightFitOptions here;
+      here.view = view;
+      here.view_corners = cube({10 + step.y, 10 + step.z, 10 + step.x}, 3);
+      LightFitOptions there = here;
+      for (Vec3d& corner : there.view_corners) corner = sum(corner, away);
+      const LightFit a = *fit_light(light, box, here);
+      const LightFit b = *fit_light(light, {sum(box.low, away), sum(box.high, away)}, there);
+      for (const Vec3d& p : {box.low, box.high, random_direction(rng)}) {
+        const Vec3d m = transform_point(a.to_texture, p);
+        const Vec3d n = transform_point(b.to_texture, sum(p, away));
+        EXPECT_NEAR(m.x, n.x, 1e-9);
+        EXPECT_NEAR(m.y, n.y, 1e-9);
+        EXPECT_NEAR(m.z, n.z, 1e-9);
+      }
+    }
+}
+
+TEST(Fit, TheSceneIsInTheMiddleOfItsMap) {
+  std::mt19937 rng(18);
+  for (int i = 0; i < 50; ++i) {
+    const Vec3d at = random_direction(rng);
+    const Box3 box{{at.x - 3, at.y - 2, at.z - 7}, {at.x + 3, at.y + 2, at.z + 7}};
+    const Vec3d m = transform_point(fit_light(random_direction(rng), box, {})->to_texture, at);
+    EXPECT_NEAR(m.x, 0.5, 1e-12);
+    EXPECT_NEAR(m.y, 0.5, 1e-12);
+    EXPECT_NEAR(m.z, 0.5, 1e-12);
+  }
+}
+
+// A map of a point must be wide enough for the rounding of coordinates of this size.
+TEST(Fit, AFarPointIsInTheMiddleOfItsMap) {
+  std::mt19937 rng(19);
+  for (const double distance : {1.0, 1e6, 1e12, 1e100})
+    for (int i = 0; i < 20; ++i) {
+      const Vec3d d = random_direction(rng);
+      const Vec3d point{distance * d.x, distance * d.y, distance * d.z};
+      const Vec3d m =
+          transform_point(fit_light(random_direction(rng), {point, point}, {})->to_texture, point);
+      EXPECT_NEAR(m.x, 0.5, 1e-4) << distance;
+      EXPECT_NEAR(m.y, 0.5, 1e-4) << distance;
+      EXPECT_NEAR(m.z, 0.5, 1e-4) << distance;
+    }
+}
+
+// Renderers hold the matrix in single precision. Corners that face the light are nearest and
+// farthest of all points of a box.
+TEST(Fit, DepthsStayInRangeInSinglePrecision) {
+  std::mt19937 rng(20);
+  for (int i = 0; i < 200; ++i) {
+    const Vec3d v = random_direction(rng), corner{std::abs(v.x), std::abs(v.y), std::abs(v.z)};
+    const Box3 box{{-corner.x, -corner.y, -corner.z}, corner};
+    const Matrix4 m = fit_light(corner, box, {})->to_texture;
+    for (const Vec3d& p : {box.low, box.high}) {
+      const float depth = float(m[2]) * float(p.x) + float(m[6]) * float(p.y) +
+                          float(m[10]) * float(p.z) + float(m[14]);
+      EXPECT_TRUE(depth >= 0 && depth <= 1) << depth;
+    }
+  }
+}
+
+TEST(Fit, MatricesKeepTheWOfPointsAtOne) {
+  const LightFit fit = *fit_light({1, 2, 3}, {{0, 0, 0}, {3, 2, 7}}, {});
+  for (const Matrix4& m : {fit.to_texture, fit.to_clip}) {
+    for (int column = 0; column < 3; ++column) EXPECT_EQ(m[4 * column + 3], 0) << column;
+    EXPECT_EQ(m[15], 1);
+  }
+}
+
+TEST(Fit, TheLengthOfTheDirectionDoesNotMatter) {
+  const Box3 box{{0, 0, 0}, {3, 2, 7}};
+  const LightFit want = *fit_light({2, -1, 2}, box, {});
+  for (const double length : {5e-324, 1e-200, 1e200, 8e307}) {
+    const Result<LightFit> fit = fit_light({2 * length, -length, 2 * length}, box, {});
+    ASSERT_TRUE(fit.ok()) << length;
+    for (int i = 0; i < 16; ++i) EXPECT_NEAR(fit->to_clip[i], want.to_clip[i], 1e-12) << length;
+  }
+}
+
+TEST(Fit, BoundsMustBeOrderedFiniteAndNearOnEveryAxis) {
+  const double nan = std::nan(""), infinity = std::numeric_limits<double>::infinity();
+  const auto made = [](double Vec3d::*axis, double low, double high) {
+    Box3 box{{0, 0, 0}, {1, 1, 1}};
+    box.low.*axis = low;
+    box.high.*axis = high;
+    return fit_light({1, 2, 3}, box, {}).ok();
+  };
+  for (double Vec3d::*axis : {&Vec3d::x, &Vec3d::y, &Vec3d::z}) {
+    EXPECT_TRUE(made(axis, 2, 2));
+    EXPECT_TRUE(made(axis, -1e150, 1e150));
+    EXPECT_FALSE(made(axis, 1, 0));
+    EXPECT_FALSE(made(axis, nan, 1));
+    EXPECT_FALSE(made(axis, 0, nan));
+    EXPECT_FALSE(made(axis, -infinity, 1));
+    EXPECT_FALSE(made(axis, 0, infinity));
+    EXPECT_FALSE(made(axis, -1e151, 1));
+    EXPECT_FALSE(made(axis, 0, 1e151));
+  }
+}
+
 TEST(Fit, SaysWhatIsWrong) {
   const Box3 box{{0, 0, 0}, {1, 1, 1}};
   EXPECT_FALSE(fit_light({0, 0, 0}, box, {}).ok());
-  EXPECT_FALSE(fit_light({0, std::nan(""), 0}, box, {}).ok());
+  for (const double bad : {std::nan(""), std::numeric_limits<double>::infinity()})
+    for (const Vec3d& light : {Vec3d{bad, 1, 1}, Vec3d{0, bad, 0}, Vec3d{1, 1, -bad}})
+      EXPECT_FALSE(fit_light(light, box, {}).ok()) << bad;
   EXPECT_FALSE(fit_light({0, 1, 0}, {{1, 0, 0}, {0, 1, 1}}, {}).ok());
   LightFitOptions tiny;
   tiny.resolution = 8;
   EXPECT_FALSE(fit_light({0, 1, 0}, box, tiny).ok());
+  for (const int resolution : {0, -1, -2048}) {
+    tiny.resolution = resolution;
+    EXPECT_FALSE(fit_light({0, 1, 0}, box, tiny).ok()) << resolution;
+  }
   EXPECT_TRUE(fit_light({0, 1, 0}, {{5, 5, 5}, {5, 5, 5}}, {}).ok());  // a single point
   EXPECT_FALSE(fit_light({0, 1, 0}, {{-1e200, 0, 0}, {1e200, 1, 1}}, {}).ok());
   LightFitOptions negative, nowhere;

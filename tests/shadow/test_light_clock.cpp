@@ -4,21 +4,18 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numbers>
 #include <random>
 
 #include "libatlas/shadow/blend.h"
 #include "libatlas/shadow/light_clock.h"
 #include "libatlas/shadow/schedule.h"
+#include "tests/shadow/fake_renderer.h"
 
 namespace atlas {
 namespace {
 
-constexpr double kDegree = std::numbers::pi / 180;
-
-Vec3d turned(double degrees) {
-  return {std::cos(degrees * kDegree), std::sin(degrees * kDegree), 0};
-}
+using test::circled;
+using test::kDegree;
 
 struct Walk {
   int refreshes = 0, frames = 0;
@@ -38,7 +35,7 @@ Walk walk(double fps, double speed, double jitter) {
   for (; w.frames < 400; ++w.frames) {
     clock.advance(noise(rng) / fps, speed);
     const FramePlan plan =
-        schedule.next(turned(clock.travelled()), [&](int n) { return turned(clock.ahead(n)); });
+        schedule.next(circled(clock.travelled()), [&](int n) { return circled(clock.ahead(n)); });
     w.refreshes += plan.refreshed;
     w.furthest =
         std::max(w.furthest, angle_between(plan.from_direction, plan.to_direction) / kDegree);
@@ -93,6 +90,36 @@ TEST(LightClock, ARestingLightStaysAndNonsenseMovesNothing) {
   LightClock boundless({inf});
   boundless.advance(1e300, 1e300);
   EXPECT_TRUE(std::isfinite(boundless.travelled()));
+}
+
+// About the last twenty frames make up the mean: one slow frame must not send keys far ahead of the
+// light, and a machine that has become slow must be noticed soon.
+TEST(LightClock, ThePredictionForgetsOneSlowFrameAndLearnsLastingOnes) {
+  const double speed = 15, usual = 0.01;
+  const auto predicted = [&](int slow_frames, double slow) {
+    LightClock clock;
+    for (int f = 0; f < 500; ++f) clock.advance(usual, speed);
+    for (int f = 0; f < slow_frames; ++f) clock.advance(slow * usual, speed);
+    return (clock.ahead(1) - clock.travelled()) / (speed * usual);  // in usual steps
+  };
+  EXPECT_NEAR(predicted(0, 1), 1, 1e-9);
+  EXPECT_GT(predicted(1, 10), 1);
+  EXPECT_LT(predicted(1, 10), 2);
+  EXPECT_LT(predicted(5, 2), 1.5) << "five frames are a small part of twenty";
+  EXPECT_GT(predicted(20, 2), 1.5) << "twenty frames are most of the mean";
+  EXPECT_NEAR(predicted(150, 2), 2, 0.01);
+}
+
+TEST(LightClock, AStepOfExactlyTheLimitIsNotSlowed) {
+  LightClock clock({2});
+  clock.advance(0.25, 8);
+  EXPECT_EQ(clock.travelled(), 2);
+  EXPECT_FALSE(clock.slowed());
+  clock.advance(0.25, 8.5);
+  EXPECT_EQ(clock.travelled(), 4);
+  EXPECT_TRUE(clock.slowed());
+  clock.advance(0.25, 4);
+  EXPECT_FALSE(clock.slowed());
 }
 
 }  // namespace

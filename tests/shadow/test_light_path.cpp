@@ -1,12 +1,16 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <locale>
+#include <cstddef>
+#include <limits>
 #include <numbers>
+#include <random>
+#include <utility>
+#include <vector>
 
 #include "libatlas/shadow/blend.h"
 #include "libatlas/shadow/light_path.h"
-#include "tests/support/foreign_locale.h"
+#include "tests/shadow/directions.h"
 
 namespace atlas {
 namespace {
@@ -19,9 +23,9 @@ LightPath must(const LightPathOptions& options) {
   return *path;
 }
 
-double dot(const Vec3d& a, const Vec3d& b) {
-  return a.x * b.x + a.y * b.y + a.z * b.z;
-}
+using test::cross;
+using test::dot;
+using test::unit;
 
 TEST(LightPath, ArcRunsAtItsSpeedOnTheGreatCircle) {
   LightPathOptions o;
@@ -58,6 +62,28 @@ TEST(LightPath, ArcOfNearlyHalfATurnKeepsItsSpeed) {
       EXPECT_NEAR(d.y, std::sin(at), 1e-9) << short_of << " " << i;
     }
   }
+}
+
+// The plane of such an arc depends on the last digits of its ends. The sum of nearly opposite
+// vectors is exact, so its product with one of them is the plane's normal to full precision.
+TEST(LightPath, ArcOfNearlyHalfATurnStaysInItsPlane) {
+  std::mt19937 rng(5);
+  int made = 0;
+  for (int attempt = 0; attempt < 1000; ++attempt) {
+    const Vec3d a = unit(test::random_direction(rng)), side = test::random_direction(rng);
+    const Vec3d b = unit({2e-6 * side.x - a.x, 2e-6 * side.y - a.y, 2e-6 * side.z - a.z});
+    LightPathOptions o;
+    o.kind = PathKind::arc;
+    o.directions = {a, b};
+    const Result<LightPath> path = LightPath::make(o);
+    // Ends whose length is not exactly one are divided by it, which turns the plane.
+    if (std::hypot(a.x, a.y, a.z) != 1 || std::hypot(b.x, b.y, b.z) != 1 || !path.ok()) continue;
+    const Vec3d normal = unit(cross(a, {a.x + b.x, a.y + b.y, a.z + b.z}));
+    for (int i = 0; i <= 16; ++i)
+      EXPECT_NEAR(dot(path->direction(path->length() * i / 16), normal), 0, 1e-14) << i;
+    ++made;
+  }
+  EXPECT_GE(made, 20);
 }
 
 TEST(LightPath, LineStaysOnTheChord) {
@@ -202,37 +228,113 @@ TEST(LightPath, TakesEveryDayPlaceAndHour) {
   EXPECT_FALSE(made(172, 0, -0.01));
 }
 
-TEST(LightPath, Text) {
-  EXPECT_EQ(parse_light_path("sun:10,-33.5,8", {})->sun.latitude, -33.5);
-  EXPECT_EQ(parse_light_path("sun", {})->kind, PathKind::sun);
-  EXPECT_EQ(parse_light_path("sun:1,0,0", {})->sun.day_of_year, 1);
-  EXPECT_EQ(parse_light_path("sun:366,0,0", {})->sun.day_of_year, 366);
-  EXPECT_EQ(parse_light_path("line:1,2,3;4,5,6", {})->kind, PathKind::line);
-  EXPECT_EQ(parse_light_path("fixed:1,2,3", {})->directions, (std::vector<Vec3d>{{1, 2, 3}}));
-  const Result<LightPathOptions> keys = parse_light_path("keys:1,2,3;4,5,6;-7,8,1e-3", {});
-  ASSERT_TRUE(keys.ok());
-  EXPECT_EQ(keys->kind, PathKind::keys);
-  EXPECT_EQ(keys->directions, (std::vector<Vec3d>{{1, 2, 3}, {4, 5, 6}, {-7, 8, 1e-3}}));
-  const Result<LightPathOptions> arc = parse_light_path("arc:1,2,3;-1,.5,1e1", {});
-  ASSERT_TRUE(arc.ok());
-  EXPECT_EQ(arc->directions[1], (Vec3d{-1, 0.5, 10}));
-  for (const char* bad :
-       {"", "moon:1,2,3", "arc", "arc:", "arc:1,2", "arc:1,2,3;", "sun:1,2", "sun:1,2,x",
-        "fixed:1,2,3,4", "sun:1e99,0,0", "sun:1.5,0,0", "sun:0,0,0", "sun:367,0,0", "fixed:1,,2"})
-    EXPECT_FALSE(parse_light_path(bad, {}).ok()) << bad;
+// Infinite travel has no remainder on a loop, and counts as none on every path.
+TEST(LightPath, TravelThatIsNotFiniteCountsAsNone) {
+  const double infinity = std::numeric_limits<double>::infinity();
+  LightPathOptions arc, keys, line, sun;
+  arc.kind = PathKind::arc;
+  arc.directions = {{2, 0, 0}, {0, 0, 3}};
+  keys.kind = PathKind::keys;
+  keys.directions = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+  line.kind = PathKind::line;
+  line.directions = {{1, 1, 0}, {-1, 1, 0}};
+  for (LightPathOptions o : {arc, keys, line, sun})
+    for (const PathEnd end : {PathEnd::loop, PathEnd::back, PathEnd::stop}) {
+      o.end = end;
+      const LightPath path = must(o);
+      for (const double degrees : {infinity, -infinity, std::nan(""), -1.0})
+        EXPECT_EQ(path.direction(degrees), path.direction(0)) << int(o.kind) << " " << degrees;
+    }
 }
 
-// A host program may have set a locale whose decimal point is a comma.
-TEST(LightPathText, ReadsTheSameInEveryLocale) {
-  const test::ForeignLocale german(LC_NUMERIC, "de_DE", "ISO-8859-1");
-  if (!german.entered()) GTEST_SKIP() << "no locale with a decimal comma can be made here";
-  ASSERT_EQ(*std::localeconv()->decimal_point, ',');
-  const auto fixed = parse_light_path("fixed:1,2.5,1", {});
-  ASSERT_TRUE(fixed.ok()) << fixed.status().message();
-  EXPECT_EQ(fixed->directions[0], (Vec3d{1, 2.5, 1}));
-  const auto sun = parse_light_path("sun:172,50.45,9", {});
-  ASSERT_TRUE(sun.ok()) << sun.status().message();
-  EXPECT_EQ(sun->sun.latitude, 50.45);
+// At sunset the sun is in the west and on the horizon, whatever hour that is.
+TEST(LightPath, ASunThatStopsStaysAtSunset) {
+  for (const double latitude : {-35.0, 0.0, 50.45}) {
+    LightPathOptions o;
+    o.end = PathEnd::stop;
+    o.sun.latitude = latitude;
+    const LightPath path = must(o);
+    const Vec3d last = path.direction(path.length());
+    EXPECT_NEAR(last.y, 0, 1e-9) << latitude;
+    EXPECT_LT(last.x, -0.5) << latitude;
+    for (const double degrees : {path.length() + 1, 500.0, 1e9}) {
+      EXPECT_EQ(path.direction(degrees), last) << latitude << " " << degrees;
+      EXPECT_EQ(path.hour(degrees), path.hour(path.length())) << latitude << " " << degrees;
+    }
+    EXPECT_NEAR(path.hour(0), 9, 1e-9);
+    EXPECT_GT(path.hour(1e9), 12);
+  }
+}
+
+TEST(LightPath, OnlyTheSunsPathHasHours) {
+  LightPathOptions o;
+  o.kind = PathKind::fixed;
+  o.directions = {{1, 2, 3}};
+  EXPECT_TRUE(std::isnan(must(o).hour(10)));
+}
+
+// A direction may be given twice, for instance by a key that was recorded while the light rested.
+TEST(LightPath, ARepeatedDirectionChangesNothing) {
+  const Vec3d a{1, 0, 0}, b{1, 2, 3}, c{0, 0, 1};
+  LightPathOptions o;
+  o.kind = PathKind::keys;
+  o.directions = {a, b, c};
+  const LightPath once = must(o);
+  for (const std::vector<Vec3d>& keys :
+       {std::vector<Vec3d>{a, a, b, c}, {a, b, b, c}, {a, b, c, c}, {a, a, a, b, b, b, c, c, c}}) {
+    o.directions = keys;
+    const LightPath path = must(o);
+    EXPECT_NEAR(path.length(), once.length(), 1e-9);
+    for (double degrees = 0; degrees <= 2.5 * once.length(); degrees += 0.25) {
+      const Vec3d d = path.direction(degrees), want = once.direction(degrees);
+      EXPECT_NEAR(d.x, want.x, 1e-12) << degrees;
+      EXPECT_NEAR(d.y, want.y, 1e-12) << degrees;
+      EXPECT_NEAR(d.z, want.z, 1e-12) << degrees;
+    }
+  }
+  o.directions = {b, b};
+  EXPECT_EQ(must(o).length(), 0);
+  EXPECT_EQ(must(o).direction(10), must(o).direction(0));
+}
+
+TEST(LightPath, TakesAsManyDirectionsAsItsKindHas) {
+  const auto made = [](PathKind kind, std::size_t count) {
+    const std::vector<Vec3d> all{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {1, 0, 1}};
+    LightPathOptions o;
+    o.kind = kind;
+    o.directions.assign(all.begin(), all.begin() + std::ptrdiff_t(count));
+    return LightPath::make(o).ok();
+  };
+  for (std::size_t count = 0; count <= 4; ++count) {
+    EXPECT_EQ(made(PathKind::fixed, count), count == 1) << count;
+    EXPECT_EQ(made(PathKind::line, count), count == 2) << count;
+    EXPECT_EQ(made(PathKind::arc, count), count == 2) << count;
+    EXPECT_EQ(made(PathKind::keys, count), count >= 2) << count;
+  }
+}
+
+// A north that leans against the vertical is made horizontal, however little is left of it.
+TEST(LightPath, NorthMayBeNearlyVertical) {
+  LightPathOptions upright;
+  const LightPath want = must(upright);
+  for (const double degrees : {1.0, 45.0, 135.0, 179.0}) {
+    LightPathOptions o;
+    o.sun.north = {0, std::cos(degrees * kDegree), -std::sin(degrees * kDegree)};
+    const Result<LightPath> path = LightPath::make(o);
+    ASSERT_TRUE(path.ok()) << degrees;
+    for (double travel = 0; travel < 100; travel += 10)
+      EXPECT_LT(angle_between(path->direction(travel), want.direction(travel)), 1e-9) << degrees;
+  }
+}
+
+// The declinations of the mean days of the months in Duffie and Beckman, Solar Engineering of
+// Thermal Processes, table 1.6.1, which are rounded to a tenth of a degree.
+TEST(LightPath, DeclinationsAreThoseOfThePublishedTable) {
+  const std::pair<int, double> table[] = {{17, -20.9}, {47, -13.0}, {75, -2.4},   {105, 9.4},
+                                          {135, 18.8}, {162, 23.1}, {198, 21.2},  {228, 13.5},
+                                          {258, 2.2},  {288, -9.6}, {318, -18.9}, {344, -23.0}};
+  for (const auto& [day, degrees] : table)
+    EXPECT_NEAR(sun_declination(day) / kDegree, degrees, 0.0501) << day;
 }
 
 }  // namespace

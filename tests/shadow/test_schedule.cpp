@@ -2,60 +2,19 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
-#include <numbers>
-#include <random>
+#include <vector>
 
 #include "libatlas/shadow/blend.h"
 #include "libatlas/shadow/light_path.h"
 #include "libatlas/shadow/schedule.h"
+#include "tests/shadow/fake_renderer.h"
 
 namespace atlas {
 namespace {
 
-constexpr double kDegree = std::numbers::pi / 180;
-
-Vec3d turned(double degrees) {
-  return {std::cos(degrees * kDegree), std::sin(degrees * kDegree), 0.2};
-}
-
-// Holds what a renderer would hold: for each slot the direction and how much of its map is drawn.
-// Checks every rule that a plan must keep, and counts the work.
-struct FakeRenderer {
-  struct Map {
-    Vec3d direction;
-    double done = -1;
-  };
-  std::map<int, Map> maps;
-  double work = 0, most = 0;
-  int begun = 0;
-
-  void run(const FramePlan& plan) {
-    double now = 0;
-    for (const MapWork& w : plan.work) {
-      Map& map = maps[w.slot];
-      ASSERT_GE(w.slot, 0);
-      ASSERT_LT(w.slot, KeySchedule::kSlots);
-      if (w.begin == 0) {
-        map = {w.direction, 0};
-        ++begun;
-      }
-      ASSERT_EQ(map.direction, w.direction) << "a map is drawn for one direction only";
-      ASSERT_NEAR(map.done, w.begin, 1e-12) << "slices leave no gap";
-      map.done = w.end;
-      now += w.end - w.begin;
-    }
-    work += now;
-    most = std::max(most, now);
-    for (const auto& [slot, direction] :
-         {std::pair{plan.from, plan.from_direction}, {plan.to, plan.to_direction}}) {
-      ASSERT_EQ(maps[slot].done, 1) << "a sampled map is complete";
-      ASSERT_EQ(maps[slot].direction, direction) << "a map is sampled with its own direction";
-    }
-    ASSERT_GE(plan.t, 0);
-    ASSERT_LT(plan.t, 1);
-  }
-};
+using test::FakeRenderer;
+using test::kDegree;
+using test::turned;
 
 TEST(Schedule, KeysAreExactAndWorkIsEven) {
   for (int k : {1, 2, 3, 8, 32}) {
@@ -104,7 +63,7 @@ TEST(Schedule, NonsenseLimitsAreTheWidest) {
     KeySchedule schedule(o);
     std::vector<double> t;
     for (int f = 0; f < 60; ++f)
-      t.push_back(schedule.next(turned(f * 7), [&](int n) { return turned((f + n) * 7); }).t);
+      t.push_back(schedule.next(turned(f * 15), [&](int n) { return turned((f + n) * 15); }).t);
     return t;
   };
   const std::vector<double> widest = frames_of(kMaxKeyDegrees);
@@ -297,7 +256,6 @@ TEST(Schedule, HoldDrawsAWholeMapEveryKFrames) {
 
 TEST(Schedule, SunPathOverADayKeepsAllRules) {
   const LightPath sun = *LightPath::make({});
-  std::mt19937 rng(3);
   ScheduleOptions o;
   KeySchedule schedule(o);
   FakeRenderer r;
