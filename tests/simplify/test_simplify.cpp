@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "tests/simplify/expect_sound.h"
@@ -66,6 +67,17 @@ TEST(Simplify, AWallStaysOnItsFloor) {
     expect_sound(mesh, coarse, 50);
     EXPECT_LT(coarse.triangles_out, amplitude > 0 ? mesh.triangles() / 5 : 12);
   }
+}
+
+TEST(Simplify, AWallStaysOnItsFloorAtTheOrigin) {
+  ChartedMesh mesh = wall_on_field(32, 0.1);
+  const auto under = std::find_if(mesh.positions.begin(), mesh.positions.end(),
+                                  [](const Vec3f& p) { return p.x == 0.5F && p.y == 0.5F; });
+  ASSERT_NE(under, mesh.positions.end());
+  const Vec3f foot = *under;
+  for (Vec3f& p : mesh.positions) p = {p.x - foot.x, p.y - foot.y, p.z - foot.z};
+  const SimplifiedMesh coarse = simplify(mesh, 50);
+  expect_sound(mesh, coarse, 50);
 }
 
 TEST(Simplify, ChartsThatMeetThemselves) {
