@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "tests/simplify/exact_slip.h"
 #include "tests/simplify/expect_sound.h"
 
 namespace atlas {
@@ -124,6 +125,25 @@ TEST(Simplify, ABoundOfItsOwn) {
     options.max_slip_texels = slip;
     const SimplifiedMesh coarse = simplify(mesh, 200, options);
     expect_sound(mesh, coarse, 200, options);
+    EXPECT_LT(coarse.triangles_out, last);
+    last = coarse.triangles_out;
+  }
+}
+
+// Texels are so large here that the turn decides. Entire fine triangles are wider than the strips
+// that do not count.
+TEST(Simplify, ATurnOfItsOwn) {
+  const ChartedMesh mesh = sphere(32);
+  std::size_t last = mesh.triangles() + 1;
+  for (const double turn : {8.0, 14.0, 22.0}) {
+    SimplifyOptions options;
+    options.max_turn_degrees = turn;
+    const SimplifiedMesh coarse = simplify(mesh, 6, options);
+    const ExactSlip exact = exact_slip(mesh, coarse, 6);
+    EXPECT_EQ(broken_triangles(mesh, coarse), 0U);
+    EXPECT_LE(coarse.max_turn_degrees, turn);
+    EXPECT_LE(exact.turn, coarse.max_turn_degrees + 1e-6);
+    EXPECT_LE(exact.inside, coarse.max_slip_texels + 1e-6);
     EXPECT_LT(coarse.triangles_out, last);
     last = coarse.triangles_out;
   }
