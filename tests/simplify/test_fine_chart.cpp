@@ -92,6 +92,9 @@ std::set<std::uint32_t> fan(const FineChart& fine, std::uint32_t corner) {
 TEST(FineChart, AVertexIsOneFanOfTriangles) {
   for (std::uint32_t seed = 1; seed <= 60; ++seed) {
     const FineChart fine = fine_chart(soup(seed, 5 + seed % 4, 3 + seed % 9));
+    for (std::uint32_t v = 0; v < fine.vertex_count(); ++v) {
+      EXPECT_EQ(fine.from(fine.vertex_half[v]), v) << "seed " << seed;
+    }
     for (std::uint32_t h = 0; h < fine.corners.size(); ++h) {
       const std::set<std::uint32_t> expected = fan(fine, h);
       std::set<std::uint32_t> found;
