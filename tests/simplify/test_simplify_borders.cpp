@@ -148,14 +148,14 @@ TEST(SimplifyBorders, SeamsThatCrossAtAPointKeepIt) {
       builder.add_grid(n, n, [=](double s, double t) {
         const float along = float(2 * s - 1), away = float(side ? -t : t);
         const float z = float(upper ? t : -t);
-        // The sides of one fold have opposite orientations in uv.
+        // One side of each fold is mirrored in uv.
         return Vertex{upper ? Vec3f{away, along, z} : Vec3f{along, away, z},
                       {side ? 2 - 2 * s : 2 * s, std::sqrt(2.0) * t}};
       });
     }
   }
   const ChartedMesh mesh = builder.build();
-  // For two of the four charts the order of the corners follows the mirrored uvs.
+  // The triangles of the mirrored charts get the other order of corners.
   ChartedMesh turned = mesh;
   for (std::size_t t = 0; t < mesh.triangles(); ++t) {
     if (mesh.charts.triangle_chart[t] % 2 == 0) continue;
