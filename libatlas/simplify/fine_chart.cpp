@@ -86,10 +86,11 @@ std::uint64_t mix(std::uint64_t h) {
 }
 
 // Equal positions have equal keys (0 and -0, too). Different positions almost certainly have
-// different keys. If they have not, the worst result is a needless cut, which does no harm.
+// different keys. If they have not, the worst result is a needless cut, which does no harm. No key
+// is 0, also not that of the origin: cut_chart() marks inner vertices by 0.
 std::uint64_t point_key(const Vec3f& p) {
   const auto bits = [](float x) { return std::uint64_t{std::bit_cast<std::uint32_t>(x + 0.0F)}; };
-  return mix(mix(bits(p.x) << 32 | bits(p.y)) + bits(p.z));
+  return mix(mix(bits(p.x) << 32 | bits(p.y)) + bits(p.z)) | std::uint64_t{1} << 63;
 }
 
 std::uint64_t edge_key(std::uint64_t a, std::uint64_t b) {

@@ -1,7 +1,9 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
+#include "tests/simplify/exact_slip.h"
 #include "tests/simplify/expect_sound.h"
 
 namespace atlas {
@@ -68,6 +70,17 @@ TEST(Simplify, AWallStaysOnItsFloor) {
   }
 }
 
+TEST(Simplify, AWallStaysOnItsFloorAtTheOrigin) {
+  ChartedMesh mesh = wall_on_field(32, 0.1);
+  const auto under = std::find_if(mesh.positions.begin(), mesh.positions.end(),
+                                  [](const Vec3f& p) { return p.x == 0.5F && p.y == 0.5F; });
+  ASSERT_NE(under, mesh.positions.end());
+  const Vec3f foot = *under;
+  for (Vec3f& p : mesh.positions) p = {p.x - foot.x, p.y - foot.y, p.z - foot.z};
+  const SimplifiedMesh coarse = simplify(mesh, 50);
+  expect_sound(mesh, coarse, 50);
+}
+
 TEST(Simplify, ChartsThatMeetThemselves) {
   const ChartedMesh ring = torus(24), band = moebius(12);
   const SimplifiedMesh coarse_ring = simplify(ring, 8), coarse_band = simplify(band, 8);
@@ -112,6 +125,25 @@ TEST(Simplify, ABoundOfItsOwn) {
     options.max_slip_texels = slip;
     const SimplifiedMesh coarse = simplify(mesh, 200, options);
     expect_sound(mesh, coarse, 200, options);
+    EXPECT_LT(coarse.triangles_out, last);
+    last = coarse.triangles_out;
+  }
+}
+
+// Texels are so large here that the turn decides. Entire fine triangles are wider than the strips
+// that do not count.
+TEST(Simplify, ATurnOfItsOwn) {
+  const ChartedMesh mesh = sphere(32);
+  std::size_t last = mesh.triangles() + 1;
+  for (const double turn : {8.0, 14.0, 22.0}) {
+    SimplifyOptions options;
+    options.max_turn_degrees = turn;
+    const SimplifiedMesh coarse = simplify(mesh, 6, options);
+    const ExactSlip exact = exact_slip(mesh, coarse, 6);
+    EXPECT_EQ(broken_triangles(mesh, coarse), 0U);
+    EXPECT_LE(coarse.max_turn_degrees, turn);
+    EXPECT_LE(exact.turn, coarse.max_turn_degrees + 1e-6);
+    EXPECT_LE(exact.inside, coarse.max_slip_texels + 1e-6);
     EXPECT_LT(coarse.triangles_out, last);
     last = coarse.triangles_out;
   }

@@ -100,6 +100,26 @@ TEST(SimplifyHostile, OnlyDegenerateTriangles) {
   EXPECT_EQ(coarse.triangles_out, coarse.degenerate_kept);
 }
 
+// A triangle may lack its area in space only, or in uv only.
+TEST(SimplifyHostile, AreasInSpaceAndInUvAreBothNeeded) {
+  const Vec3f line[] = {{0, 0, 0}, {1, 0, 0}, {2, 0, 0}},
+              space[] = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+  const Vec2d flat[] = {{0, 0}, {1, 0}, {2, 0}}, wide[] = {{0, 0}, {1, 0}, {0, 1}};
+  for (const int lacking : {0, 1, 2, 3}) {
+    Vertices vertices;
+    for (int k = 0; k < 3; ++k) {
+      vertices.push_back({lacking & 1 ? line[k] : space[k], lacking & 2 ? flat[k] : wide[k]});
+    }
+    ChartedMeshBuilder builder;
+    builder.add_chart(vertices, {0, 1, 2});
+    const SimplifiedMesh coarse = simplify(builder.build(), 10);
+    EXPECT_EQ(coarse.degenerate_in, lacking ? 1U : 0U) << lacking;
+    EXPECT_EQ(coarse.degenerate_kept, lacking ? 1U : 0U) << lacking;
+    EXPECT_EQ(coarse.degenerate_dropped, 0U) << lacking;
+    EXPECT_EQ(coarse.triangles_out, 1U) << lacking;
+  }
+}
+
 // A vertex with many neighbours, all of which can be removed before it is.
 TEST(SimplifyHostile, AHubInsideGoesOnceItsNeighboursHave) {
   constexpr std::uint32_t n = 400;
@@ -238,6 +258,11 @@ TEST(SimplifyHostile, BadOptionsAndInput) {
     EXPECT_EQ(code(border), ErrorCode::bad_option);
     EXPECT_EQ(code(turn), ErrorCode::bad_option);
   }
+  SimplifyOptions right_angle;
+  right_angle.max_turn_degrees = 90;
+  EXPECT_EQ(code(right_angle), ErrorCode::bad_option);
+  right_angle.max_turn_degrees = 89.99;
+  EXPECT_EQ(code(right_angle), ErrorCode::ok);
   const auto with = [](const ChartedMesh& m, const std::vector<double>& d) {
     return simplify_charts({m.view(), m.charts, d}, {}, {}).status().code();
   };
@@ -264,6 +289,46 @@ TEST(SimplifyHostile, BadOptionsAndInput) {
   broken = mesh;
   broken.indices.pop_back();
   EXPECT_EQ(with(broken, densities), ErrorCode::bad_input);
+}
+
+// Each number is one too large. Behind the ends of the lists lie numbers that would pass.
+TEST(SimplifyHostile, InputThatReachesBeyondItsEndByOne) {
+  const auto code = [](const ChartedMesh& m) {
+    const std::vector<double> densities(m.charts.charts.size(), 10);
+    return simplify_charts({m.view(), m.charts, densities}, {}, {}).status().code();
+  };
+  const ChartedMesh mesh = box(2);
+  ASSERT_EQ(code(mesh), ErrorCode::ok);
+  ChartedMesh broken = mesh;
+  broken.charts.charts[5].triangle_count += 1;
+  broken.charts.chart_triangles.push_back(broken.charts.chart_triangles.back());
+  broken.charts.chart_triangles.pop_back();
+  EXPECT_EQ(code(broken), ErrorCode::bad_input);
+  broken = mesh;
+  broken.charts.charts[5].uv_count += 1;
+  EXPECT_EQ(code(broken), ErrorCode::bad_input);
+  broken = mesh;  // the first uv of the next chart
+  broken.charts.triangle_uv[0] = broken.charts.charts[1].first_uv;
+  EXPECT_EQ(code(broken), ErrorCode::bad_input);
+  broken = mesh;  // the last uv of the chart before
+  const std::uint32_t last = broken.charts.charts[5].first_triangle;
+  broken.charts.triangle_uv[std::size_t{3} * last] = broken.charts.charts[5].first_uv - 1;
+  EXPECT_EQ(code(broken), ErrorCode::bad_input);
+  broken = mesh;
+  broken.charts.uv_vertex[3] = static_cast<std::uint32_t>(broken.positions.size());
+  broken.positions.push_back({0, 0, 0});
+  broken.positions.pop_back();
+  EXPECT_EQ(code(broken), ErrorCode::bad_input);
+  broken = mesh;
+  broken.charts.chart_triangles[3] = static_cast<std::uint32_t>(mesh.triangles());
+  EXPECT_EQ(code(broken), ErrorCode::bad_input);
+}
+
+TEST(SimplifyHostile, FlippedTrianglesThatDoNotExistAreIgnored) {
+  ChartedMesh mesh = box(6);
+  const SimplifiedMesh without = simplify(mesh, 100);
+  mesh.charts.flipped_triangles = {static_cast<std::uint32_t>(mesh.triangles()), 0xffffffffU};
+  EXPECT_EQ(simplify(mesh, 100).uv_indices, without.uv_indices);
 }
 
 TEST(SimplifyHostile, Cancelled) {

@@ -184,6 +184,57 @@ TEST(SlipMeasure, OfARoofIsItsHeightAndSlope) {
   }
 }
 
+std::uint32_t vertex_at(const Measured& m, double u, double v) {
+  for (std::uint32_t i = 0; i < m.fine().vertex_count(); ++i) {
+    if (glm::distance(m.point(i).uv, {u, v}) < 1e-12) return i;
+  }
+  ADD_FAILURE() << "no vertex at " << u << ", " << v;
+  return 0;
+}
+
+// A strip of the given width rises beside a flat rectangle, and one coarse triangle spans both. The
+// strip's turn counts only if it is wider than a tenth of the slip's limit.
+TEST(SlipMeasure, NarrowStripsDoNotCountForTheTurn) {
+  constexpr double kWidth = 0.001, kSlope = 0.5;
+  ChartedMeshBuilder builder;
+  const auto vertex = [](double x, double y) {
+    const double u = x > 1 ? 1 + kWidth : x;
+    return ChartedMeshBuilder::Vertex{{float(u), float(y), float(x > 1 ? kSlope * kWidth : 0)},
+                                      {u, y}};
+  };
+  builder.add_chart({vertex(0, 0), vertex(1, 0), vertex(1, 1), vertex(2, 0), vertex(2, 1)},
+                    {0, 1, 2, 1, 3, 4, 1, 4, 2});
+  Measured measured(builder.build());
+  const auto at = [&](double u, double v) { return vertex_at(measured, u, v); };
+  const std::array<std::uint32_t, 3> spanning{at(0, 0), at(1 + kWidth, 0), at(1 + kWidth, 1)};
+  // The strip consists of two triangles. Each has half a rectangle's area, so it counts as a strip
+  // of half the width.
+  for (const double factor : {0.5, 0.9, 1.1, 2.0}) {
+    SlipLimits found;
+    ASSERT_TRUE(measured(spanning, {factor * 10 * kWidth / 2, 3}, found));
+    const double turn = factor < 1 ? std::atan(kSlope) : 0;
+    EXPECT_NEAR(found.turn, turn, 2 * kSlope * kWidth) << factor;
+  }
+}
+
+// A pyramid that is tiny against the coarse triangle still has its height.
+TEST(SlipMeasure, ASpikeOnATinyPatchCounts) {
+  constexpr double kSmall = 1e-7;
+  ChartedMeshBuilder builder;
+  const auto vertex = [](double u, double v, double z) {
+    return ChartedMeshBuilder::Vertex{{float(u), float(v), float(z)}, {u, v}};
+  };
+  builder.add_chart(
+      {vertex(0, 0, 0), vertex(4, 0, 0), vertex(0, 4, 0), vertex(1, 1, 0), vertex(1 + kSmall, 1, 0),
+       vertex(1, 1 + kSmall, 0), vertex(1 + kSmall / 3, 1 + kSmall / 3, 0.25)},
+      {0, 1, 3, 1, 4, 3, 1, 2, 4, 2, 5, 4, 2, 0, 5, 0, 3, 5, 3, 4, 6, 4, 5, 6, 5, 3, 6});
+  Measured measured(builder.build());
+  SlipLimits found;
+  const auto at = [&](double u, double v) { return vertex_at(measured, u, v); };
+  ASSERT_TRUE(measured({at(0, 0), at(4, 0), at(0, 4)}, {1, 3}, found));
+  EXPECT_NEAR(found.slip, 0.25, 1e-6);
+}
+
 // Returns the distance of a point from the middle third of the unit square, which the plate leaves
 // out. It is negative inside.
 double from_hole(const glm::dvec2& uv) {
