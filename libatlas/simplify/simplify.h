@@ -23,8 +23,9 @@ struct SimplifyOptions {
   // counts as max_slip_texels.
   double max_border_slip_texels = 0.02;
   // The largest angle between the normals of a coarse triangle and of any fine triangle that it
-  // replaces, in degrees. It is below 90, so nothing flips. Strips narrower than a tenth of
-  // max_slip_texels do not count.
+  // replaces, in degrees. It is below 90, so nothing flips. What of a fine triangle lies in the
+  // coarse one does not count if its width, its area divided by its longest side, is less than a
+  // tenth of max_slip_texels.
   double max_turn_degrees = 60;
 };
 
