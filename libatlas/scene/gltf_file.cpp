@@ -275,10 +275,10 @@ Result<tinygltf::Model> load_gltf(const fs::path& path, const GltfLoading& loadi
   auto parts = check_gltf(path, *bytes, loading.textures, loading.defects);
   if (!parts.ok()) return parts.status();
   nlohmann::json parsed = std::move(parts->document);
-  const bool packed = fill_fallback_buffers(parsed);
+  const std::vector<int> fallbacks = fill_fallback_buffers(parsed, parts->container);
   std::vector<GltfDracoPart> draco;
   if (Status s = describe_draco(path, parsed, draco); !s.ok()) return s;
-  const bool changed = packed || !draco.empty();
+  const bool changed = !fallbacks.empty() || !draco.empty();
   const std::string text = changed ? parsed.dump() : std::string();
   if (changed) {
     parts->json = text;
@@ -311,9 +311,7 @@ Result<tinygltf::Model> load_gltf(const fs::path& path, const GltfLoading& loadi
   }
   if (!folder.status.ok()) return folder.status;
   if (!loaded) return malformed_gltf(path, error.empty() ? "not a glTF file" : short_line(error));
-  if (packed) {
-    if (Status s = decode_meshopt_views(path, model); !s.ok()) return s;
-  }
+  if (Status s = decode_meshopt_views(path, fallbacks, model); !s.ok()) return s;
   if (Status s = decode_draco_parts(path, draco, model, loading.document); !s.ok()) return s;
   return model;
 }

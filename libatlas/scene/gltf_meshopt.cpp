@@ -3,7 +3,11 @@
 #include <fmt/format.h>
 #include <meshoptimizer.h>
 
+#include <algorithm>
+#include <bit>
 #include <cmath>
+#include <cstring>
+#include <limits>
 #include <string>
 #include <utility>
 
@@ -26,13 +30,6 @@ struct Packed {
   std::size_t count = 0, stride = 0;
   std::string mode, filter;
 };
-
-bool is_fallback(const tinygltf::Buffer& buffer) {
-  const auto extension = buffer.extensions.find(kGltfMeshopt);
-  if (extension == buffer.extensions.end() || !extension->second.Has("fallback")) return false;
-  const tinygltf::Value& fallback = extension->second.Get("fallback");
-  return fallback.IsBool() && fallback.Get<bool>();
-}
 
 // Returns a number that must be a whole one from 0 on, or `absent` without one; -1 if it is not.
 double whole(const tinygltf::Value& object, const char* key, double absent) {
@@ -71,6 +68,27 @@ std::string read_description(const tinygltf::Model& model, const tinygltf::Value
   return {};
 }
 
+// Colours of N bits, (1 << K) - 1 of which are 1: luma, two differences and an alpha of K - 1 bits,
+// whose highest bit, the K-th, tells K. The transform is YCoCg without its lifting (appendix B of
+// KHR_meshopt_compression).
+template <class Signed, class Unsigned>
+void unfilter_colors(std::size_t count, unsigned char* data) {
+  for (std::size_t i = 0; i < count; ++i, data += 4 * sizeof(Unsigned)) {
+    Signed in[4];
+    Unsigned out[4];
+    std::memcpy(in, data, sizeof in);
+    const int y = static_cast<Unsigned>(in[0]), co = in[1], cg = in[2];
+    const auto tagged = static_cast<Unsigned>(in[3]);
+    const int one = (1 << std::bit_width(tagged)) - 1, alpha = tagged & (one >> 1);
+    const int wanted[4] = {y + co - cg, y + cg, y - co - cg, alpha << 1 | (alpha & 1)};
+    constexpr double kMost = std::numeric_limits<Unsigned>::max();
+    for (int c = 0; c < 4; ++c)  // damaged data are beyond the range, and have no alpha
+      out[c] = static_cast<Unsigned>(
+          std::clamp(std::round(wanted[c] * kMost / std::max(one, 1)), 0.0, kMost));
+    std::memcpy(data, out, sizeof out);
+  }
+}
+
 // Undoes a filter of vertex data. Returns false if it is unknown, or does not fit the stride.
 bool unfilter(const Packed& packed, unsigned char* data) {
   const std::size_t count = packed.count, stride = packed.stride;
@@ -81,10 +99,22 @@ bool unfilter(const Packed& packed, unsigned char* data) {
     meshopt_decodeFilterQuat(data, count, stride);
   } else if (packed.filter == "EXPONENTIAL" && stride % 4 == 0) {
     meshopt_decodeFilterExp(data, count, stride);
+  } else if (packed.filter == "COLOR" && stride == 4) {
+    unfilter_colors<std::int8_t, std::uint8_t>(count, data);
+  } else if (packed.filter == "COLOR" && stride == 8) {
+    unfilter_colors<std::int16_t, std::uint16_t>(count, data);
   } else {
     return false;
   }
   return true;
+}
+
+// Returns whether the bytes say that they are vertices of a codec newer than the first, which old
+// versions of the library do not know.
+bool newer_codec(const Packed& packed) {
+  constexpr unsigned char kVertices = 0xa0;
+  return packed.mode == "ATTRIBUTES" && packed.bytes[0] > kVertices &&
+         packed.bytes[0] < kVertices + 16;
 }
 
 // Returns what is wrong, or nothing.
@@ -107,45 +137,71 @@ std::string decode(const Packed& packed, std::vector<unsigned char>& out) {
   return {};
 }
 
-}  // namespace
-
-bool fill_fallback_buffers(json& document) {
-  bool any = false;
-  const auto buffers = document.find("buffers");
-  if (buffers == document.end()) return false;
-  for (json& buffer : *buffers) {
-    const auto extensions = buffer.find("extensions");
-    if (buffer.contains("uri") || extensions == buffer.end() || !extensions->is_object()) continue;
-    const auto meshopt = extensions->find(kGltfMeshopt);
-    if (meshopt == extensions->end() || !meshopt->is_object()) continue;
-    if (meshopt->value("fallback", json()) != true) continue;
-    buffer["byteLength"] = 1;
-    buffer["uri"] = "data:application/octet-stream;base64,AA==";
-    any = true;
-  }
-  return any;
+// Returns the extension of a buffer or a view in the JSON, or null.
+const json* extension_of(const json& element) {
+  const auto extensions = element.find("extensions");
+  if (extensions == element.end() || !extensions->is_object()) return nullptr;
+  for (const char* name : kGltfMeshopt)
+    if (const auto at = extensions->find(name); at != extensions->end() && at->is_object())
+      return &*at;
+  return nullptr;
 }
 
-Status decode_meshopt_views(const fs::path& path, tinygltf::Model& model) {
+bool has_packed_views(const json& document, std::size_t buffer) {
+  const auto views = document.find("bufferViews");
+  return views != document.end() && std::any_of(views->begin(), views->end(), [&](const json& v) {
+           return integer_at(v, "buffer", -1) == std::int64_t(buffer) && extension_of(v);
+         });
+}
+
+Status too_new(const fs::path& path, std::size_t view, const char* name) {
+  return {
+      ErrorCode::unsupported,
+      fmt::format("{}: buffer view {} ({}) is of a codec that this build's meshoptimizer cannot "
+                  "decode (compress the file by EXT_meshopt_compression, or not at all)",
+                  path.string(), view, name)};
+}
+
+}  // namespace
+
+std::vector<int> fill_fallback_buffers(json& document, bool container) {
+  std::vector<int> fallbacks;
+  const auto buffers = document.find("buffers");
+  for (std::size_t i = 0; buffers != document.end() && i < buffers->size(); ++i) {
+    json& buffer = (*buffers)[i];
+    const bool in_container = container && i == 0 && !extension_of(buffer);
+    if (buffer.contains("uri") || in_container || !has_packed_views(document, i)) continue;
+    buffer["byteLength"] = 1;
+    buffer["uri"] = "data:application/octet-stream;base64,AA==";
+    fallbacks.push_back(static_cast<int>(i));
+  }
+  return fallbacks;
+}
+
+Status decode_meshopt_views(const fs::path& path, const std::vector<int>& fallbacks,
+                            tinygltf::Model& model) {
   std::vector<tinygltf::Buffer> decoded;
   const std::size_t first = model.buffers.size();
   for (std::size_t i = 0; i < model.bufferViews.size(); ++i) {
     tinygltf::BufferView& view = model.bufferViews[i];
-    const auto extension = view.extensions.find(kGltfMeshopt);
-    if (extension == view.extensions.end() || view.buffer < 0 ||
-        std::size_t(view.buffer) >= first || !is_fallback(model.buffers[view.buffer])) {
-      continue;
+    if (std::find(fallbacks.begin(), fallbacks.end(), view.buffer) == fallbacks.end()) continue;
+    for (const char* name : kGltfMeshopt) {
+      const auto extension = view.extensions.find(name);
+      if (extension == view.extensions.end()) continue;
+      Packed packed;
+      tinygltf::Buffer buffer;
+      std::string wrong = read_description(model, extension->second, packed);
+      const bool described = wrong.empty();
+      if (described) wrong = decode(packed, buffer.data);
+      if (!wrong.empty() && described && newer_codec(packed)) return too_new(path, i, name);
+      if (!wrong.empty())
+        return malformed_gltf(path, fmt::format("buffer view {} ({}) {}", i, name, wrong));
+      view.buffer = static_cast<int>(first + decoded.size());
+      view.byteOffset = 0;
+      view.byteLength = buffer.data.size();
+      decoded.push_back(std::move(buffer));
+      break;
     }
-    Packed packed;
-    tinygltf::Buffer buffer;
-    std::string wrong = read_description(model, extension->second, packed);
-    if (wrong.empty()) wrong = decode(packed, buffer.data);
-    if (!wrong.empty())
-      return malformed_gltf(path, fmt::format("buffer view {} ({}) {}", i, kGltfMeshopt, wrong));
-    view.buffer = static_cast<int>(first + decoded.size());
-    view.byteOffset = 0;
-    view.byteLength = buffer.data.size();
-    decoded.push_back(std::move(buffer));
   }
   for (tinygltf::Buffer& buffer : decoded) model.buffers.push_back(std::move(buffer));
   return {};

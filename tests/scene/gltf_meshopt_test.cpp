@@ -17,6 +17,7 @@ using test::Gltf;
 using test::Grid;
 using test::json;
 using test::kMeshopt;
+using test::kNewerMeshopt;
 using test::load_glb;
 using test::packed_grid;
 using test::PackedGltf;
@@ -50,6 +51,26 @@ TEST(GltfMeshopt, EachModeGivesTheDataBack) {
   for (const bool as_triangles : {true, false}) {
     for (const int size : {2, 4}) expect_grid(load_glb(folder, packed_grid(as_triangles, size)), 0);
   }
+}
+
+TEST(GltfMeshopt, TheNewerExtensionHasTheSameData) {
+  const TempFolder folder;
+  expect_grid(load_glb(folder, packed_grid(true, 2, 0, kNewerMeshopt)), 0);
+}
+
+// That a buffer without data is a fallback need not be said.
+TEST(GltfMeshopt, FallbackBuffersNeedNoTag) {
+  const TempFolder folder;
+  PackedGltf g = packed_grid();
+  g.j["buffers"][0].erase("extensions");
+  expect_grid(load_glb(folder, g), 0);
+  folder.write("data.bin", g.bytes);
+  g.j["buffers"].insert(g.j["buffers"].begin(),
+                        json({{"uri", "data.bin"}, {"byteLength", g.bytes.size()}}));
+  expect_grid(read_scene(folder.write("scene.gltf", g.j.dump()), {}, {}), 0);
+  for (json& view : g.j["bufferViews"]) view.erase("extensions");
+  EXPECT_EQ(read_scene(folder.write("scene.gltf", g.j.dump()), {}, {}).status().code(),
+            ErrorCode::bad_input);
 }
 
 TEST(GltfMeshopt, ExponentialFilter) {
@@ -106,6 +127,62 @@ TEST(GltfMeshopt, OctahedralNormals) {
       EXPECT_NEAR(n.z, wanted[2], tolerance);
     }
   }
+}
+
+// Colours in the filter's form, of K bits: for whole numbers r, g and b with r + b even and
+// (r + b) / 2 + g even, luma and differences are whole, and the way back is exact.
+TEST(GltfMeshopt, ColorFilter) {
+  const TempFolder folder;
+  const Grid grid;
+  const std::size_t count = grid.positions.size() / 3;
+  for (const int bits : {5, 8, 12, 16}) {
+    const std::size_t size = bits <= 8 ? 1 : 2;
+    const int one = (1 << bits) - 1;
+    Bytes filtered;
+    std::vector<int> colors;
+    const auto put = [&](int value) {
+      filtered.push_back(static_cast<unsigned char>(value));
+      if (size == 2) filtered.push_back(static_cast<unsigned char>(value >> 8));
+    };
+    for (std::size_t v = 0; v < count; ++v) {
+      const int r = int(v * 7919) & one & ~3, b = int(v * 104729) & one & ~3,
+                g = int(v * 1299709) & one & ~1;
+      const int co = (r - b) / 2, between = b + co, cg = (g - between) / 2;
+      colors.insert(colors.end(), {r, g, b});
+      for (const int value : {between + cg, co, cg, (1 << (bits - 1)) | (one >> 1)}) put(value);
+    }
+    PackedGltf g = packed_grid(true, 2, 0, kNewerMeshopt);
+    const int v = g.packed_vertices(filtered.data(), {count, 4 * size, "ATTRIBUTES", "COLOR"});
+    g.j["meshes"][0]["primitives"][0]["attributes"]["COLOR_0"] =
+        g.accessor({{"bufferView", v},
+                    {"componentType", size == 1 ? 5121 : 5123},
+                    {"normalized", true},
+                    {"type", "VEC4"},
+                    {"count", count}});
+    const auto loaded = load_glb(folder, g);
+    ASSERT_TRUE(loaded.ok()) << loaded.status().message();
+    const double step = 0.51 / (size == 1 ? 255 : 65535);
+    for (std::size_t i = 0; i < count; ++i) {
+      const Vec3f c = loaded->scene.illumination[i];
+      EXPECT_NEAR(c.x, double(colors[3 * i]) / one, step) << bits << ' ' << i;
+      EXPECT_NEAR(c.y, double(colors[3 * i + 1]) / one, step) << bits << ' ' << i;
+      EXPECT_NEAR(c.z, double(colors[3 * i + 2]) / one, step) << bits << ' ' << i;
+    }
+  }
+}
+
+// The library may be too old for vertices of the newer codec; those are not damaged.
+TEST(GltfMeshopt, ANewerCodecIsNoDamage) {
+  const TempFolder folder;
+  PackedGltf g = packed_grid(true, 2, 0, kNewerMeshopt);
+  const json& view = g.j["bufferViews"][0]["extensions"][kNewerMeshopt];
+  char& version = g.bytes[view["byteOffset"].get<std::size_t>()];
+  ASSERT_EQ(version, char(0xa0));
+  version = char(0xaf);
+  const Status status = load_glb(folder, g).status();
+  EXPECT_EQ(status.code(), ErrorCode::unsupported);
+  EXPECT_NE(status.message().find("buffer view 0 (KHR_meshopt_compression)"), std::string::npos)
+      << status.message();
 }
 
 // Instances of one triangle, turned about z by 30 degrees more each.

@@ -12,6 +12,7 @@
 namespace atlas::test {
 
 inline constexpr const char* kMeshopt = "EXT_meshopt_compression";
+inline constexpr const char* kNewerMeshopt = "KHR_meshopt_compression";
 using Bytes = std::vector<unsigned char>;
 
 struct PackedRows {
@@ -22,15 +23,16 @@ struct PackedRows {
 
 // A glTF file that holds its data only in compressed form, as gltfpack writes them.
 struct PackedGltf : Gltf {
-  PackedGltf() {
-    j["extensionsUsed"] = j["extensionsRequired"] = {kMeshopt, "KHR_mesh_quantization"};
-    j["buffers"] = json::array(
-        {{{"byteLength", 1 << 20}, {"extensions", {{kMeshopt, {{"fallback", true}}}}}}});
+  const char* extension;
+  explicit PackedGltf(const char* name = kMeshopt) : extension(name) {
+    j["extensionsUsed"] = j["extensionsRequired"] = {name, "KHR_mesh_quantization"};
+    j["buffers"] =
+        json::array({{{"byteLength", 1 << 20}, {"extensions", {{name, {{"fallback", true}}}}}}});
   }
   int packed(const Bytes& compressed, const PackedRows& rows) {
     const int number = view(compressed);
     json& v = j["bufferViews"][std::size_t(number)];
-    v["extensions"][kMeshopt] = {
+    v["extensions"][extension] = {
         {"buffer", 0},          {"byteOffset", v["byteOffset"]}, {"byteLength", compressed.size()},
         {"count", rows.count},  {"byteStride", rows.stride},     {"mode", rows.mode},
         {"filter", rows.filter}};
@@ -87,9 +89,10 @@ struct Grid {
   }
 };
 
-inline PackedGltf packed_grid(bool as_triangles = true, int size = 2, int bits = 0) {
+inline PackedGltf packed_grid(bool as_triangles = true, int size = 2, int bits = 0,
+                              const char* extension = kMeshopt) {
   const Grid grid;
-  PackedGltf g;
+  PackedGltf g(extension);
   const int positions = g.packed_positions(grid.positions, bits);
   const int indices = g.packed_indices(grid.indices, as_triangles, size);
   g.single({{"attributes", {{"POSITION", positions}}}, {"indices", indices}});
