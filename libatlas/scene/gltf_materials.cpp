@@ -171,6 +171,16 @@ void add_transform(const tinygltf::TextureInfo& info, RawMaterial& material) {
   material.uv_v = {s * scale[0], c * scale[1], 1 - c * scale[1] - offset[1]};
 }
 
+// Shaders of WebGL, by either name of their extension, give their inputs any names, so the colour
+// cannot be found among these.
+void report_shaders(const tinygltf::Material& m, const std::string& name, SceneBuilder& builder) {
+  for (const char* extension : {"KHR_techniques_webgl", "KHR_technique_webgl"})
+    if (m.extensions.contains(extension))
+      builder.defects.add(DefectKind::reflectance_unknown, [&] {
+        return fmt::format("{}: material '{}' ({})", builder.file, name, extension);
+      });
+}
+
 TextureWrap wrap_of(int mode) {
   if (mode == TINYGLTF_TEXTURE_WRAP_CLAMP_TO_EDGE) return TextureWrap::clamp;
   return mode == TINYGLTF_TEXTURE_WRAP_MIRRORED_REPEAT ? TextureWrap::mirror : TextureWrap::repeat;
@@ -200,6 +210,7 @@ Result<std::vector<int>> add_gltf_materials(const tinygltf::Model& model, SceneB
         return fmt::format("{}: material '{}'", builder.file, material.name);
       });
     }
+    report_shaders(m, material.name, builder);
     add_emission(m, material);
     add_transparency(m, diffuse.opacity, material);
     material.texture = image_of(model, diffuse.texture.index);

@@ -150,6 +150,26 @@ TEST(Gltf, TexturesWithoutAnImageThatIsReadAreTold) {
   EXPECT_NE(loaded->defects.lines().front().find("bark"), std::string::npos);
 }
 
+// What shapes are made of is read all the same.
+TEST(Gltf, ShadersOfMaterialsAreNamed) {
+  const TempFolder folder;
+  for (const char* extension : {"KHR_techniques_webgl", "KHR_technique_webgl"}) {
+    Gltf g;
+    g.j["extensionsUsed"] = g.j["extensionsRequired"] = {extension};
+    g.j["materials"] = {{{"name", "bark"}, {"extensions", {{extension, {{"technique", 0}}}}}}};
+    g.single({{"attributes", {{"POSITION", g.floats(kSquare, "VEC3", 3)}}},
+              {"indices", g.indices(std::vector<std::uint16_t>{0, 1, 2})},
+              {"material", 0}});
+    const auto loaded = load_glb(folder, g);
+    ASSERT_TRUE(loaded.ok()) << loaded.status().message();
+    EXPECT_EQ(loaded->scene.triangle_count(), 1u);
+    EXPECT_EQ(loaded->scene.materials[0].diffuse, (Vec3f{1, 1, 1}));
+    ASSERT_EQ(loaded->defects.lines().size(), 1u);
+    const std::string line = loaded->defects.lines()[0];
+    EXPECT_NE(line.find(std::string("'bark' (") + extension + ")"), std::string::npos) << line;
+  }
+}
+
 TEST(Gltf, FormatsOfTexturesAreOnlyRequiredWhereTexturesAreRead) {
   const TempFolder folder;
   const auto read = [&](const char* extension, bool textures, bool rest) {
