@@ -4,7 +4,9 @@
 #include <meshoptimizer.h>
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
+#include <cstdint>
 #include <vector>
 
 #include "tests/scene/gltf_maker.h"
@@ -20,6 +22,17 @@ struct PackedRows {
   const char* mode;
   const char* filter = "NONE";
 };
+
+// Returns a number in the form of the exponential filter: 8 bits of an exponent above 24 bits of a
+// signed mantissa, of which `bits` are used. The library's own function has other parameters in
+// each version.
+inline float exponential(float value, int bits) {
+  int exponent = 0;
+  const double part = std::frexp(double(value), &exponent);  // below 1
+  const auto mantissa = static_cast<std::int32_t>(std::lround(std::ldexp(part, bits - 1)));
+  const auto scale = static_cast<std::uint32_t>(exponent - (bits - 1));
+  return std::bit_cast<float>(scale << 24 | (static_cast<std::uint32_t>(mantissa) & 0xffffff));
+}
 
 // A glTF file that holds its data only in compressed form, as gltfpack writes them.
 struct PackedGltf : Gltf {
@@ -50,7 +63,8 @@ struct PackedGltf : Gltf {
   int packed_positions(const std::vector<float>& positions, int bits) {
     const std::size_t count = positions.size() / 3;
     std::vector<float> data = positions;
-    if (bits > 0) meshopt_encodeFilterExp(data.data(), count, 12, bits, positions.data());
+    for (float& value : data)
+      if (bits > 0) value = exponential(value, bits);
     const int v =
         packed_vertices(data.data(), {count, 12, "ATTRIBUTES", bits > 0 ? "EXPONENTIAL" : "NONE"});
     return accessor(
