@@ -172,6 +172,32 @@ TEST_F(Play, SaysWhichMaterialsStayDark) {
   EXPECT_EQ(shine({2, 2, 1}), 3);
   EXPECT_EQ(shine({0, 0, 0}), 3);
   EXPECT_TRUE(make_view_scene(room(), {})->emission.empty()) << "memory for nothing";
+  // Several are told in one line.
+  std::ofstream(path_ / "lamps.mtl") << "newmtl lamp\nmap_Ke a.png\nnewmtl screen\nmap_Ke b.png\n";
+  said.clear();
+  ASSERT_TRUE(load_view(path_ / "lamps.obj", false, context).ok());
+  ASSERT_EQ(said.size(), 1u);
+  EXPECT_EQ(said[0].find("2 materials ('lamp', ...) emit light by a texture"), 0u) << said[0];
+}
+
+TEST_F(Play, SaysWhatTheReaderLeftOut) {
+  std::ofstream(path_ / "torn.obj") << "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\nf 1 2 9\n";
+  std::vector<std::string> said;
+  Context context;
+  context.warn = [&](std::string_view line) { said.emplace_back(line); };
+  ASSERT_TRUE(load_view(path_ / "torn.obj", false, context).ok());
+  ASSERT_EQ(said.size(), 1u);
+  EXPECT_EQ(said[0].find("defect: "), 0u) << said[0];
+  EXPECT_NE(said[0].find("torn.obj:5"), std::string::npos) << said[0];
+}
+
+TEST_F(Play, TexturesHoldLightIfTheCallerSaysSo) {
+  ASSERT_TRUE(write_png(path_ / "t.png", Image8(2, 2, 3, 128), {}).ok());
+  std::ofstream(path_ / "a.mtl") << "newmtl m\nmap_Kd t.png\n";
+  std::ofstream(path_ / "a.obj") << "mtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nusemtl m\n"
+                                    "f 1/1 2/1 3/1\n";
+  for (const bool baked : {false, true})
+    EXPECT_EQ(load_view(path_ / "a.obj", baked, {})->baked(), baked);
 }
 
 TEST_F(Play, KnowsWhichFilesHoldLight) {
@@ -179,7 +205,7 @@ TEST_F(Play, KnowsWhichFilesHoldLight) {
   std::ofstream(path_ / "b.gltf") << "{}";
   EXPECT_TRUE(textures_hold_light(path_ / "a.gltf"));
   EXPECT_FALSE(textures_hold_light(path_ / "b.gltf"));
-  for (const int embedded : {1 << 22, (1 << 22) - 30, 9'000'000}) {
+  for (const int embedded : {1 << 22, (1 << 22) - 50, 9'000'000}) {
     std::ofstream(path_ / "c.gltf") << R"({"buffers":[{"uri":")" << std::string(embedded, 'A')
                                     << R"("}],"extensionsUsed":["KHR_materials_unlit"]})";
     EXPECT_TRUE(textures_hold_light(path_ / "c.gltf")) << embedded;
@@ -187,6 +213,11 @@ TEST_F(Play, KnowsWhichFilesHoldLight) {
   EXPECT_FALSE(textures_hold_light(path_ / "absent.gltf"));
   EXPECT_TRUE(textures_hold_light("world.wrl"));
   EXPECT_TRUE(textures_hold_light("WORLD.WRL"));
+  EXPECT_TRUE(textures_hold_light("world.wrz"));
+  fs::copy_file(path_ / "a.gltf", path_ / "a.GLB");
+  fs::copy_file(path_ / "a.gltf", path_ / "a.obj");
+  EXPECT_TRUE(textures_hold_light(path_ / "a.GLB"));
+  EXPECT_FALSE(textures_hold_light(path_ / "a.obj"));
   EXPECT_FALSE(textures_hold_light("scene.obj"));
 }
 
@@ -267,6 +298,48 @@ TEST_F(Bench, MeasuresEveryCombinationAndWritesItsFiles) {
   for (const std::string& name : {std::string("plots.gp"), std::string("fps-march.dat"),
                                   cost + "-lambert.dat", cost + "-ward.dat"})
     EXPECT_TRUE(fs::exists(path_ / "out" / name)) << name;
+}
+
+TEST_F(Bench, SumsUpTheFramesOfARun) {
+  const View view = courtyard_view();
+  BenchOptions o;
+  o.render = small();
+  o.render.schedule.interval_frames = 3;
+  o.camera = view.camera;
+  o.shadings = {Shading::lambert};
+  o.methods = {ShadowMethod::classic, ShadowMethod::linear};
+  o.frames = 7;
+  o.error_intervals = {4};
+  const Renderer first = must_render(view.scene, o.render);
+  const LightPath path = *LightPath::make({});
+  const BenchTimes times = *bench_times(first, path, o);
+  ASSERT_EQ(times.runs.size(), 2u);
+  for (const BenchRun& run : times.runs) {
+    double shadow = 0, gpu = 0, work = 0, worst = 0;
+    for (const FrameTime& f : run.frames) {
+      shadow += f.gpu_shadow;
+      gpu += f.gpu();
+      work += f.triangles_shadow + f.triangles_lit;
+      worst = std::max(worst, double(f.triangles_shadow + f.triangles_lit));
+    }
+    EXPECT_NEAR(run.shadow_share, shadow / gpu, 1e-6);
+    EXPECT_NEAR(run.work_mean, work / double(run.frames.size()), 1e-6);
+    EXPECT_EQ(run.work_worst, worst);
+  }
+  EXPECT_GT(times.runs[1].work_worst, times.runs[1].work_mean) << "maps are drawn now and then";
+  // Light positions come in whole intervals.
+  std::vector<BenchError> errors;
+  for (const int frames : {1, 4, 5, 8}) {
+    o.error_frames = frames;
+    const std::vector<BenchError> measured = *bench_errors(first, path, o);
+    ASSERT_EQ(measured.size(), 1u) << "classic is the truth itself";
+    errors.push_back(measured[0]);
+  }
+  for (const auto& [some, whole] : {std::pair{0, 1}, {2, 3}}) {
+    EXPECT_EQ(errors[some].visibility.mean, errors[whole].visibility.mean);
+    EXPECT_EQ(errors[some].psnr, errors[whole].psnr);
+    EXPECT_GT(errors[some].visibility.mean, 0);
+  }
 }
 
 }  // namespace
