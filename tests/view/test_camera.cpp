@@ -103,7 +103,6 @@ TEST(Camera, LooksAtABoxFromSlightlyAboveItsSide) {
     }
 }
 
-// The smallest distance from such a point that floats know is 500 000 times that of the eye.
 TEST(Camera, LooksAtAPointFarFromTheOrigin) {
   for (const Vec3d& at : {Vec3d{}, {5, 5, 5}, {-3e6, 1e6, 7e5}, {1e30, 0, 0}}) {
     const Camera camera = camera_for({at, at}, {0, 1, 0}, 60);

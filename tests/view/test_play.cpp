@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
@@ -308,7 +309,7 @@ TEST_F(Bench, SumsUpTheFramesOfARun) {
   o.camera = view.camera;
   o.shadings = {Shading::lambert};
   o.methods = {ShadowMethod::classic, ShadowMethod::linear};
-  o.frames = 7;
+  o.frames = 8;
   o.error_intervals = {4};
   const Renderer first = must_render(view.scene, o.render);
   const LightPath path = *LightPath::make({});
@@ -340,6 +341,51 @@ TEST_F(Bench, SumsUpTheFramesOfARun) {
     EXPECT_EQ(errors[some].psnr, errors[whole].psnr);
     EXPECT_GT(errors[some].visibility.mean, 0);
   }
+}
+
+// The errors once more, frame by frame.
+TEST_F(Bench, ErrorsAreMeansOverTheLightsPositions) {
+  const View view = courtyard_view();
+  BenchOptions o;
+  o.render = small();
+  o.render.shading = Shading::lambert;
+  o.camera = view.camera;
+  o.methods = {ShadowMethod::linear};
+  o.error_intervals = {4};
+  o.error_frames = 8;
+  const Renderer first = must_render(view.scene, o.render);
+  const LightPath path = *LightPath::make({});
+  const BenchError measured = (*bench_errors(first, path, o))[0];
+  o.render.schedule.interval_frames = 4;
+  o.render.schedule.interval_degrees = 0;
+  std::vector<Renderer> renderers;  // the truth's visibility and colours, then those of the method
+  for (const ShadowMethod method : {ShadowMethod::classic, ShadowMethod::linear})
+    for (const bool visibility : {true, false}) {
+      o.render.shadows = method;
+      o.render.show_visibility = visibility;
+      renderers.push_back(must_render(view.scene, o.render));
+    }
+  double mean = 0, wrong = 0, squares = 0, similarity = 0;
+  for (int f = 0; f < 8; ++f) {
+    std::vector<Image8> pictures;
+    for (Renderer& r : renderers) {
+      const auto ahead = [&](int n) { return path.direction((f + n) * o.degrees_per_frame); };
+      ASSERT_TRUE(r.draw(o.camera, {ahead(0), ahead}).ok());
+      pictures.push_back(r.read_image());
+    }
+    const VisibilityError e = visibility_error(pictures[2], pictures[0]);
+    mean += e.mean / 8;
+    wrong += e.wrong / 8;
+    for (std::size_t i = 0; i < pictures[1].texels.size(); ++i)
+      squares += std::pow((pictures[3].texels[i] - pictures[1].texels[i]) / 255.0, 2);
+    similarity += ssim(pictures[3], pictures[1]) / 8;
+  }
+  EXPECT_NEAR(measured.visibility.mean, mean, 1e-9);
+  EXPECT_NEAR(measured.visibility.wrong, wrong, 1e-9);
+  EXPECT_NEAR(measured.ssim, similarity, 1e-9);
+  squares /= 8.0 * 48 * 32 * 3;
+  EXPECT_NEAR(measured.psnr, -10 * std::log10(squares), 1e-6);
+  EXPECT_GT(squares, 0);
 }
 
 }  // namespace

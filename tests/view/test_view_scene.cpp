@@ -148,7 +148,10 @@ TEST(ViewScene, NegativeZerosAndOppositeWindingsMakeNoCrease) {
   Scene s;
   const float rise = std::tan(glm::radians(10.0f));
   add_quad(s, {{-1, -rise, 0}, {0, 0, 0}, {0, 0, -1}, {-1, -rise, -1}});
-  add_quad(s, {{-0.0f, -0.0f, -0.0f}, {-0.0f, -0.0f, -1}, {1, -rise, -1}, {1, -rise, 0}});
+  add_quad(s, {{0, 0, 0}, {0, 0, -1}, {1, -rise, -1}, {1, -rise, 0}});
+  for (std::size_t i = 6; i < 12; ++i)
+    for (float* c : {&s.positions[i].x, &s.positions[i].y, &s.positions[i].z})
+      if (*c == 0) *c = -0.0f;
   const ViewScene v = *make_view_scene(s, {});
   EXPECT_EQ(v.caster_positions.size(), 6u);
   int shared = 0;
