@@ -70,9 +70,10 @@ fs::path AtomicFiles::path_for(const fs::path& name) {
 Status AtomicFiles::told_by_target(const Status& status) const {
   std::string message = status.message();
   for (const Entry& entry : entries_) {
-    const std::string temporary = entry.temporary.string();
-    if (const auto at = message.find(temporary); at != std::string::npos)
-      message.replace(at, temporary.size(), entry.name.string());
+    const std::string temporary = entry.temporary.string(), name = entry.name.string();
+    for (auto at = message.find(temporary); at != std::string::npos;
+         at = message.find(temporary, at + name.size()))
+      message.replace(at, temporary.size(), name);
   }
   return {status.code(), message};
 }
@@ -148,7 +149,7 @@ Status check_writable(const fs::path& name) {
   if (longest > 0 && target.filename().string().size() > std::size_t(longest))
     return refuse(fmt::format("takes names of up to {} bytes (give a shorter one)", longest));
   if (fs::is_other(there)) return {};
-  if (::access(directory.c_str(), W_OK) != 0)
+  if (::access(directory.c_str(), W_OK | X_OK) != 0)
     return refuse(
         fmt::format("does not take files: {} (name another folder)", std::strerror(errno)));
   if (fs::is_directory(there)) return refuse("has a directory of that name");

@@ -25,7 +25,7 @@ class AtomicFiles {
   AtomicFiles& operator=(const AtomicFiles&) = delete;
 
   // Returns the temporary path to which `target` is to be written. It keeps the extension, since
-  // image writers choose the format by it. Symbolic links are followed: the file that they lead to
+  // some writers choose the format by it. Symbolic links are followed: the file that they lead to
   // is replaced, not the links. If a file cannot replace the target (a device, a pipe), the target
   // itself is returned and so written directly. Also removes the temporary files that killed
   // processes have left in the target's folder.

@@ -18,10 +18,13 @@ struct Image {
       : width(w), height(h), channels(c), texels(std::size_t(w) * h * c, fill) {}
 
   bool empty() const { return width == 0 || height == 0 || channels == 0; }
-  // Returns whether no side is negative and `texels` has width * height * channels values.
+  // Returns whether no side is negative and `texels` has width * height * channels values. That
+  // product of three integers may leave the range of std::size_t, so it is divided instead.
   bool whole() const {
-    return width >= 0 && height >= 0 && channels >= 0 &&
-           texels.size() == std::size_t(width) * std::size_t(height) * std::size_t(channels);
+    if (width < 0 || height < 0 || channels < 0) return false;
+    if (empty()) return texels.empty();
+    const std::size_t area = std::size_t(width) * std::size_t(height);
+    return texels.size() % area == 0 && texels.size() / area == std::size_t(channels);
   }
 
   T* at(int x, int y) { return texels.data() + (std::size_t(y) * width + x) * channels; }

@@ -104,9 +104,10 @@ void add_own_cpu_seconds(double seconds) {
 void parallel_for(const Context& context, std::size_t n, std::size_t grain,
                   const std::function<void(std::size_t begin, std::size_t end)>& body) {
   grain = std::max<std::size_t>(grain, 1);
-  const std::size_t chunks = (n + grain - 1) / grain;
+  const std::size_t chunks = n / grain + (n % grain != 0);
   const auto run_chunk = [&](std::size_t chunk) {
-    if (!context.cancelled()) body(chunk * grain, std::min(n, (chunk + 1) * grain));
+    const std::size_t begin = chunk * grain;
+    if (!context.cancelled()) body(begin, begin + std::min(n - begin, grain));
   };
   if (chunks <= 1 || context.threads == 1) {
     for (std::size_t chunk = 0; chunk < chunks; ++chunk) run_chunk(chunk);

@@ -1,5 +1,6 @@
 #include "libatlas/core/parse_number.h"
 
+#include <algorithm>
 #include <charconv>
 #include <limits>
 #include <string_view>
@@ -7,6 +8,25 @@
 
 namespace atlas {
 namespace {
+
+// Returns whether a number out of the range of double is too small and not too large. The exponent
+// alone does not tell: 0.001e2 is a tenth. What tells is the power of ten of the first digit that
+// is not 0.
+bool is_tiny(std::string_view digits) {
+  const std::size_t e = std::min(digits.find_first_of("eE"), digits.size());
+  const std::size_t point = std::min(digits.find('.'), e);
+  const std::size_t first = digits.find_first_not_of("0.");
+  double power = first < point ? double(point - first) - 1 : -double(first - point);
+  if (e < digits.size()) {
+    // An exponent of many digits becomes infinite here.
+    double exponent = 0;
+    const bool negative = digits[e + 1] == '-';
+    for (const char c : digits.substr(e + 1))
+      if (c >= '0' && c <= '9') exponent = exponent * 10 + (c - '0');
+    power += negative ? -exponent : exponent;
+  }
+  return power < 0;
+}
 
 const char* after_digits(const char* at, const char* end) {
   while (at < end && *at >= '0' && *at <= '9') ++at;
@@ -43,10 +63,7 @@ const char* parse_number_slow(const char* at, const char* end, double& value) {
     // from_chars does not say whether the number is too small or too large.
     std::string_view digits(start, std::size_t(stop - start));
     if (digits.front() == '-') digits.remove_prefix(1);
-    const std::size_t e = digits.find_first_of("eE");
-    const bool tiny =
-        e != digits.npos ? digits[e + 1] == '-' : digits.find_first_not_of('0') == digits.find('.');
-    value = tiny ? 0 : std::numeric_limits<double>::infinity();
+    value = is_tiny(digits) ? 0 : std::numeric_limits<double>::infinity();
     if (*start == '-') value = -value;
   } else if (error != std::errc{}) {
     return nullptr;

@@ -200,10 +200,11 @@ Status encode(Target& to, const Image<T>& image, const OIIO::ImageSpec& spec) {
   return {};
 }
 
+// Writes a file of OpenImageIO's `format`, whatever the extension of its name is.
 template <class T>
-Status write(const std::filesystem::path& path, const Image<T>& image,
-             const OIIO::ImageSpec& spec) {
-  auto writer = OIIO::ImageOutput::create(path.string());
+Status write(const std::filesystem::path& path, const Image<T>& image, const OIIO::ImageSpec& spec,
+             const char* format) {
+  auto writer = OIIO::ImageOutput::create(format);
   if (!writer) return failure(path, "no writer for this kind of image", OIIO::geterror());
   std::FILE* file = std::fopen(path.c_str(), "wb");
   if (!file) return failure(path, "cannot be written", std::strerror(errno));
@@ -259,7 +260,7 @@ Status write_8_bits(const std::filesystem::path& path, const Image8& image,
     spec["compression"] = "rle";
   }
   spec["oiio:UnassociatedAlpha"] = 1;
-  return write(path, image, spec);
+  return write(path, image, spec, "png");
 }
 
 // Returns whether half floats represent an image with at least ten bits for all values down to a
@@ -277,7 +278,7 @@ Status write_floats(const std::filesystem::path& path, const ImageF& image) {
   spec["compression"] = "zip";
   // Without this, it would be the time of writing; the same input must give the same bytes.
   spec["DateTime"] = "1970:01:01 00:00:00";
-  return write(path, image, spec);
+  return write(path, image, spec, "openexr");
 }
 
 constexpr ImageFiles functions = {image_files_mark(), read_8_bits,  decode,

@@ -20,6 +20,12 @@ glm::dvec3 axis_beside(const glm::dvec3& v) {
   return a.y <= a.z ? glm::dvec3(0, 1, 0) : glm::dvec3(0, 0, 1);
 }
 
+// Returns the radius of the sphere around a box. A box that floats cannot tell from a point gets
+// some extent, so that a camera before it does not stand in its own target.
+double radius_of(const Box3& box, const glm::dvec3& centre) {
+  return std::max({glm::length(to_glm(box.high) - centre), 1e-9 * glm::length(centre), 1e-30});
+}
+
 // If the camera looks along its `up`, another axis takes the place of `up`.
 Axes axes_of(const Camera& camera) {
   Axes a;
@@ -59,7 +65,7 @@ std::array<Vec3d, 8> view_corners(const Camera& camera, double aspect, double fa
 
 void fit_planes(Camera& camera, const Box3& box) {
   const glm::dvec3 centre = (to_glm(box.low) + to_glm(box.high)) * 0.5;
-  const double radius = std::max(glm::length(to_glm(box.high) - centre), 1e-30);
+  const double radius = radius_of(box, centre);
   const double distance = glm::length(to_glm(camera.eye) - centre);
   camera.far_plane = distance + radius * 1.01;
   // Near enough that a walker in a hall of a kilometre sees a wall at arm's length. Depths are
@@ -74,7 +80,7 @@ Camera camera_for(const Box3& box, const Vec3d& up, double fov_degrees) {
   Camera camera;
   camera.fov_degrees = fov_degrees;
   const glm::dvec3 centre = (to_glm(box.low) + to_glm(box.high)) * 0.5;
-  const double radius = std::max(glm::length(to_glm(box.high) - centre), 1e-30);
+  const double radius = radius_of(box, centre);
   const glm::dvec3 u = glm::normalize(to_glm(up));
   const glm::dvec3 side = std::abs(u.z) < 0.9 ? glm::dvec3(0, 0, 1) : glm::dvec3(0, -1, 0);
   const glm::dvec3 flat = glm::normalize(side - u * glm::dot(u, side));

@@ -30,7 +30,7 @@ Camera camera_for(const Box3& box, const Vec3d& up, double fov_degrees);
 void fit_planes(Camera& camera, const Box3& box);
 
 // Moves the camera in world units (forward and right along its view, up along its `up`) and turns
-// it (degrees; pitch is limited).
+// it (degrees; yaw to the right, pitch upwards to at most 88 degrees from level).
 void fly(Camera& camera, const Vec3d& forward_right_up, double yaw, double pitch);
 
 }  // namespace atlas

@@ -14,8 +14,8 @@
 namespace atlas {
 
 // Returns whether a file's textures hold light instead of reflectance: those of VRML worlds (which
-// atlas-export writes), and of glTF whose materials are unlit. Returns false if the file cannot be
-// read.
+// atlas-export writes), and of glTF whose materials are unlit. Returns false for a glTF file that
+// cannot be read.
 bool textures_hold_light(const std::filesystem::path& path);
 
 // Returns whether a file is a VRML world that says that its z axis points up. Returns false if the

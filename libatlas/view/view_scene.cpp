@@ -212,7 +212,7 @@ class Builder {
       low = glm::min(low, to_glm(view_.positions[view_.indices[i]]));
       high = glm::max(high, to_glm(view_.positions[view_.indices[i]]));
     }
-    const glm::vec3 centre = low + (high - low) * 0.5f;
+    const glm::vec3 centre = low * 0.5f + high * 0.5f;  // high - low may leave the range of float
     c.centre = from_glm(centre);
     double radius = 0;  // in double, since squares of small lengths underflow floats
     for (std::uint32_t i = c.first; i < c.first + c.count; ++i)

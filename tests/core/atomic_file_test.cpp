@@ -13,6 +13,7 @@
 #include <utility>
 
 #include "libatlas/core/leftovers.h"
+#include "tests/core/no_root.h"
 #include "tests/scene/temp_folder.h"
 #include "tests/support/full_disk.h"
 
@@ -115,29 +116,12 @@ TEST(AtomicFiles, NamesOfAnyLengthThatTheFileSystemTakes) {
   EXPECT_NE(status.message().find("up to 255 bytes"), std::string::npos) << status.message();
 }
 
-// Acts as another user, because root is not bound by permissions. access(2) checks the real user.
-class NoRoot {
- public:
-  NoRoot() : user_(::getuid()) {
-    if (user_ == 0) change(65534);
-  }
-  ~NoRoot() {
-    if (user_ == 0) change(0);
-  }
-  NoRoot(const NoRoot&) = delete;
-  NoRoot& operator=(const NoRoot&) = delete;
-
- private:
-  static void change(uid_t user) { EXPECT_EQ(::setreuid(user, 0), 0); }
-  uid_t user_;
-};
-
 TEST(AtomicFiles, AFolderThatTakesNoFileIsToldWithItsCause) {
   const TempFolder folder;
   folder.write("file", "");
   std::filesystem::create_directories(folder / "closed");
   ASSERT_EQ(::chmod((folder / "closed").c_str(), 0555), 0);
-  const NoRoot user;
+  const test::NoRoot user;
   for (const auto& [name, words] :
        {std::pair("closed/a.txt", "closed does not take files: Permission denied (name another"),
         {"absent/a.txt", "absent does not exist (create it first)"},

@@ -10,24 +10,16 @@
 #include "libatlas/core/clock.h"
 #include "libatlas/image/image_claim.h"
 #include "libatlas/image/image_io.h"
+#include "tests/image/file_bytes.h"
 #include "tests/scene/temp_folder.h"
 #include "tests/support/leaks.h"
 
 namespace atlas {
 namespace {
 
+using test::big;
+using test::little;
 using test::TempFolder;
-
-std::string big(std::uint32_t value, int count) {
-  std::string s;
-  for (int i = count - 1; i >= 0; --i) s += char(value >> (8 * i) & 255);
-  return s;
-}
-
-std::string little(std::uint32_t value, int count) {
-  const std::string s = big(value, count);
-  return {s.rbegin(), s.rend()};
-}
 
 std::string chunk(const std::string& type, const std::string& data) {
   const std::string body = type + data;
@@ -121,6 +113,7 @@ std::vector<Hostile> hostile_files() {
           {"a.hdr", "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 60000 +X 60000\n\2\2"},
           {"a.webp", webp(16383)},
           {"a.j2k", jpeg2000(60000)},
+          {"a.jp2", big(12, 4) + "jP  \r\n\x87\n" + big(0, 4) + "jp2c" + jpeg2000(60000)},
           {"a.tga", std::string("\0\0\2\0\0\0\0\0\0\0\0\0", 12) + little(60000, 2) +
                         little(60000, 2) + std::string("\x18\0\xff\xff\xff", 5)}};
 }
@@ -183,6 +176,18 @@ TEST(HostileImage, TheLimitLetsTheLargestPagesPass) {
             "a.png: claims 32769 x 32768 texels of 4 channels (4.0 GiB), and at most 4.0 GiB are "
             "read: make the image smaller");
   EXPECT_EQ(check_claim({0, 5, 3, 1, 1}, large, "a").code(), ErrorCode::bad_input);
+}
+
+// As 8-bit values this image takes little more than 1 GiB.
+TEST(HostileImage, TheLimitIsThatOfTheValuesInMemory) {
+  const TempFolder folder;
+  const std::string rest(60'000, '\0');
+  const auto path = folder.write(
+      "a.png", png(32768, 32769, std::string("\x08\0\0\0\0", 5), "") + chunk("teXt", rest));
+  const Status status = read_image_float(path).status();
+  EXPECT_EQ(status.code(), ErrorCode::unsupported);
+  EXPECT_NE(status.message().find("(4.0 GiB), and at most 4.0 GiB are read"), std::string::npos)
+      << status.message();
 }
 
 // For these files, the readers only gave a message, and the missing rest was grey or black.

@@ -40,10 +40,17 @@ TEST(Image, ImagesOutOfStepAreRefused) {
       << status.message();
   EXPECT_EQ(write_png(folder / "a.png", noise(4, 4, 5), {}).code(), ErrorCode::bad_input);
   EXPECT_EQ(write_png(folder / "a.png", {}, {}).code(), ErrorCode::bad_input);
-  EXPECT_EQ(write_png(folder / "a.png", noise(4, 4, 3), {10}).code(), ErrorCode::bad_option);
+  EXPECT_EQ(write_png(folder / "a.png", {4, 4, 0}, {}).code(), ErrorCode::bad_input);
+  for (const int level : {-1, 10})
+    EXPECT_EQ(write_png(folder / "a.png", noise(4, 4, 3), {level}).code(), ErrorCode::bad_option);
   ImageF linear(4, 4, 3);
   linear.texels.pop_back();
   EXPECT_EQ(write_exr(folder / "a.exr", linear).code(), ErrorCode::bad_input);
+  linear = {};
+  linear.width = linear.height = 1 << 30;
+  linear.channels = 16;  // the product wraps around to the number of texels, which is 0
+  EXPECT_EQ(write_exr(folder / "a.exr", linear).code(), ErrorCode::bad_input);
+  EXPECT_EQ(write_exr(folder / "a.exr", ImageF(1, 1, 1025)).code(), ErrorCode::bad_input);
   EXPECT_FALSE(std::filesystem::exists(folder / "a.png"));
 }
 
@@ -130,6 +137,36 @@ TEST(Image, ColoursUnderAlphaStayAsStored) {
   EXPECT_EQ(read_image8(folder / "a.png")->texels, image.texels);
 }
 
+// Two names of a file that a program may ask for although they name another format, or none.
+TEST(Image, FilesAreOfTheirFormatWhateverTheyAreCalled) {
+  const TempFolder folder;
+  const Image8 image = noise(9, 7, 3);
+  ImageF linear(2, 2, 5);
+  for (std::size_t i = 0; i < linear.texels.size(); ++i) linear.texels[i] = float(i);
+  for (const char* name : {"page.jpg", "page"}) {
+    ASSERT_TRUE(write_png(folder / name, image, {}).ok()) << name;
+    const std::string png = TempFolder::read(folder / name);
+    EXPECT_EQ(png.substr(0, 4), "\x89PNG") << name;
+    const std::vector<std::uint8_t> bytes(png.begin(), png.end());
+    EXPECT_EQ(decode_image8(bytes, name)->texels, image.texels) << name;
+    const Status status = write_exr(folder / name, linear);
+    ASSERT_TRUE(status.ok()) << status.message();
+    EXPECT_EQ(TempFolder::read(folder / name).substr(0, 4), "\x76\x2f\x31\x01") << name;
+  }
+  ASSERT_TRUE(write_exr(folder / "a.exr", linear).ok());
+  EXPECT_EQ(read_image_float(folder / "a.exr")->texels, linear.texels);
+}
+
+// One texel in the lossless form.
+TEST(Image, DecodesWebp) {
+  const std::string file(
+      "RIFF\x1a\0\0\0WEBPVP8L\x0d\0\0\0\x2f\0\0\0\x10\7\x10\x11\x11\x88\x88\xfe\7\0", 34);
+  const auto decoded = decode_image8(std::vector<std::uint8_t>(file.begin(), file.end()), "a");
+  ASSERT_TRUE(decoded.ok()) << decoded.status().message();
+  EXPECT_EQ(decoded->width, 1);
+  EXPECT_EQ(decoded->height, 1);
+}
+
 TEST(Image, DecodesFromMemory) {
   const TempFolder folder;
   const Image8 image = noise(9, 7, 3);
@@ -168,12 +205,15 @@ TEST(Image, ExrKeepsSunlightAndDimScenes) {
   const TempFolder folder;
   for (const float largest : {65504.0f, 65536.0f, 110000.0f, 1e30f, 0.01f, 1e-3f, 1e-6f, 1e-30f}) {
     ImageF image(4, 1, 1);
-    for (std::size_t i = 0; i < 4; ++i) image.texels[i] = largest * (1 - 0.2999f * float(i));
-    ASSERT_TRUE(write_exr(folder / "a.exr", image).ok());
-    const auto read = read_image_float(folder / "a.exr");
-    ASSERT_TRUE(read.ok()) << read.status().message();
-    for (std::size_t i = 0; i < 4; ++i)
-      EXPECT_NEAR(read->texels[i] / image.texels[i], 1, 1.0 / 1024) << largest << ' ' << i;
+    for (const float sign : {1.0f, -1.0f}) {
+      for (std::size_t i = 0; i < 4; ++i)
+        image.texels[i] = sign * largest * (1 - 0.2999f * float(i));
+      ASSERT_TRUE(write_exr(folder / "a.exr", image).ok());
+      const auto read = read_image_float(folder / "a.exr");
+      ASSERT_TRUE(read.ok()) << read.status().message();
+      for (std::size_t i = 0; i < 4; ++i)
+        EXPECT_NEAR(read->texels[i] / image.texels[i], 1, 1.0 / 1024) << largest << ' ' << i;
+    }
   }
 }
 

@@ -113,5 +113,23 @@ TEST(SampleTriangle, NeedsFewSamplesForTinyOnesAndAboutTheirLengthForNeedles) {
   }
 }
 
+// Points of quadrature stand for triangles whose longest edge is at most two steps of the grid.
+TEST(SampleTriangle, LargerThanTwoStepsIsSampledByTheGrid) {
+  for (const int side : {2, 4, 8}) {
+    const SampleGrid grid(side * side);
+    const auto kind = [&](double edge) {
+      return sample_kind({Vec2d{5, 5}, {5 + edge, 5}, {5 + edge / 2, 5 + 0.8 * edge}}, grid);
+    };
+    EXPECT_EQ(kind(1.99 / side), SampleKind::points) << side;
+    EXPECT_EQ(kind(2.01 / side), SampleKind::grid) << side;
+  }
+}
+
+TEST(SampleTriangle, ASingleShiftIsTheCentre) {
+  const SampleGrid grid(1);
+  EXPECT_EQ(grid.offset[0], (Vec2d{0.5, 0.5}));
+  EXPECT_EQ(samples({Vec2d{5, 5}, {5.6, 5}, {5, 5.5}}, grid).samples, 1);
+}
+
 }  // namespace
 }  // namespace atlas

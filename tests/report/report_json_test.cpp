@@ -8,13 +8,14 @@
 #include <vector>
 
 #include "libatlas/report/export_report.h"
-#include "tests/scene/temp_folder.h"
+#include "tests/report/written_report.h"
 
 namespace atlas {
 namespace {
 
 using nlohmann::json;
-using test::TempFolder;
+using test::complete_report;
+using test::written;
 
 // A figure of a report, its place in the JSON, and the factor by which it is written.
 struct Figure {
@@ -22,12 +23,6 @@ struct Figure {
   std::variant<double*, std::uint64_t*, std::int64_t*, std::uint32_t*, std::int32_t*> value;
   double factor = 1;
 };
-
-json written(const ExportReport& report) {
-  const TempFolder folder;
-  EXPECT_TRUE(write_json(report, folder / "report.json").ok());
-  return json::parse(TempFolder::read(folder / "report.json"));
-}
 
 // Gives each figure another value, and expects every value where it belongs.
 void expect_in_place(ExportReport& report, const std::vector<Figure>& figures) {
@@ -43,21 +38,6 @@ void expect_in_place(ExportReport& report, const std::vector<Figure>& figures) {
     ASSERT_TRUE(file.contains(place)) << figure.key;
     EXPECT_NEAR(file[place].get<double>(), figure.factor * next++, 1e-9) << figure.key;
   }
-}
-
-ExportReport complete_report() {
-  ExportReport r;
-  r.carried_out = r.simplified = r.error_measured = true;
-  r.plan.steps = {{"grouping", true, ""}};
-  r.stages.resize(1);
-  r.pages.resize(1);
-  r.charts.resize(1);
-  r.gaps.emplace();
-  r.texels_drawn_twice.emplace();
-  r.grouping.group_size = {0};
-  r.grouping.trace = {{}};
-  r.files = {{"world.wrl", 0}};
-  return r;
 }
 
 constexpr double kPerMebibyte = 1.0 / (1 << 20);

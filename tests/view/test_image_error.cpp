@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <random>
+#include <utility>
 
 #include "libatlas/view/bench.h"
 #include "libatlas/view/image_error.h"
@@ -49,6 +50,18 @@ TEST(ImageError, SsimIsTheFormula) {
   EXPECT_LT(ssim(a, b), 1);
 }
 
+TEST(ImageError, SsimOfTheSmallestImages) {
+  for (const auto& [width, height] : {std::pair{8, 8}, {8, 9}, {9, 8}}) {
+    const Image8 a = noise(width, height, 3), b = noise(width, height, 4);
+    EXPECT_NEAR(ssim(a, b), slow_ssim(a, b), 1e-9);
+  }
+  for (const auto& [width, height] : {std::pair{7, 8}, {8, 7}, {1, 1}}) {
+    const Image8 a = noise(width, height, 3), b = noise(width, height, 4);
+    EXPECT_EQ(ssim(a, a), 1);
+    EXPECT_EQ(ssim(a, b), 0);
+  }
+}
+
 TEST(ImageError, PsnrOfKnownDifferences) {
   Image8 a(4, 4, 1, 100), b(4, 4, 1, 110);
   EXPECT_NEAR(psnr(a, b), 20 * std::log10(25.5), 1e-9);
@@ -70,6 +83,18 @@ TEST(ImageError, VisibilityCountsAndSetsEdgesApart) {
   EXPECT_NEAR(e.edge_share, 0.1, 1e-9);
 }
 
+TEST(ImageError, VisibilityIsTheFirstChannelOfEither) {
+  Image8 truth(4, 2, 1, 0), got(4, 2, 3, 99);
+  for (int i = 0; i < 8; ++i) {
+    truth.texels[std::size_t(i)] = i < 3 ? 255 : 0;
+    got.texels[std::size_t(3 * i)] = truth.texels[std::size_t(i)];
+  }
+  EXPECT_EQ(visibility_error(got, truth).mean, 0);
+  got.texels[3 * 5] = 255;
+  EXPECT_EQ(visibility_error(got, truth).wrong, 1.0 / 8);
+  EXPECT_EQ(visibility_error(truth, got).wrong, 1.0 / 8);
+}
+
 TEST(ImageError, SpreadTakesNearestRanks) {
   std::vector<double> v;
   for (int i = 1; i <= 1000; ++i) v.push_back(i);
@@ -82,6 +107,9 @@ TEST(ImageError, SpreadTakesNearestRanks) {
   EXPECT_NEAR(s.mean, 500.5, 1e-9);
   EXPECT_EQ(spread_of({}).worst, 0);
   EXPECT_EQ(spread_of({7}).p50, 7);
+  EXPECT_EQ(spread_of({3, 1, 2}).p50, 2);
+  EXPECT_EQ(spread_of({4, 1, 3, 2}).p50, 2);
+  EXPECT_EQ(spread_of({4, 1, 3, 2}).p95, 4);
 }
 
 }  // namespace

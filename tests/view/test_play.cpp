@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
@@ -172,6 +173,32 @@ TEST_F(Play, SaysWhichMaterialsStayDark) {
   EXPECT_EQ(shine({2, 2, 1}), 3);
   EXPECT_EQ(shine({0, 0, 0}), 3);
   EXPECT_TRUE(make_view_scene(room(), {})->emission.empty()) << "memory for nothing";
+  // Several are told in one line.
+  std::ofstream(path_ / "lamps.mtl") << "newmtl lamp\nmap_Ke a.png\nnewmtl screen\nmap_Ke b.png\n";
+  said.clear();
+  ASSERT_TRUE(load_view(path_ / "lamps.obj", false, context).ok());
+  ASSERT_EQ(said.size(), 1u);
+  EXPECT_EQ(said[0].find("2 materials ('lamp', ...) emit light by a texture"), 0u) << said[0];
+}
+
+TEST_F(Play, SaysWhatTheReaderLeftOut) {
+  std::ofstream(path_ / "torn.obj") << "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\nf 1 2 9\n";
+  std::vector<std::string> said;
+  Context context;
+  context.warn = [&](std::string_view line) { said.emplace_back(line); };
+  ASSERT_TRUE(load_view(path_ / "torn.obj", false, context).ok());
+  ASSERT_EQ(said.size(), 1u);
+  EXPECT_EQ(said[0].find("defect: "), 0u) << said[0];
+  EXPECT_NE(said[0].find("torn.obj:5"), std::string::npos) << said[0];
+}
+
+TEST_F(Play, TexturesHoldLightIfTheCallerSaysSo) {
+  ASSERT_TRUE(write_png(path_ / "t.png", Image8(2, 2, 3, 128), {}).ok());
+  std::ofstream(path_ / "a.mtl") << "newmtl m\nmap_Kd t.png\n";
+  std::ofstream(path_ / "a.obj") << "mtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nusemtl m\n"
+                                    "f 1/1 2/1 3/1\n";
+  for (const bool baked : {false, true})
+    EXPECT_EQ(load_view(path_ / "a.obj", baked, {})->baked(), baked);
 }
 
 TEST_F(Play, KnowsWhichFilesHoldLight) {
@@ -179,7 +206,7 @@ TEST_F(Play, KnowsWhichFilesHoldLight) {
   std::ofstream(path_ / "b.gltf") << "{}";
   EXPECT_TRUE(textures_hold_light(path_ / "a.gltf"));
   EXPECT_FALSE(textures_hold_light(path_ / "b.gltf"));
-  for (const int embedded : {1 << 22, (1 << 22) - 30, 9'000'000}) {
+  for (const int embedded : {1 << 22, (1 << 22) - 50, 9'000'000}) {
     std::ofstream(path_ / "c.gltf") << R"({"buffers":[{"uri":")" << std::string(embedded, 'A')
                                     << R"("}],"extensionsUsed":["KHR_materials_unlit"]})";
     EXPECT_TRUE(textures_hold_light(path_ / "c.gltf")) << embedded;
@@ -187,6 +214,11 @@ TEST_F(Play, KnowsWhichFilesHoldLight) {
   EXPECT_FALSE(textures_hold_light(path_ / "absent.gltf"));
   EXPECT_TRUE(textures_hold_light("world.wrl"));
   EXPECT_TRUE(textures_hold_light("WORLD.WRL"));
+  EXPECT_TRUE(textures_hold_light("world.wrz"));
+  fs::copy_file(path_ / "a.gltf", path_ / "a.GLB");
+  fs::copy_file(path_ / "a.gltf", path_ / "a.obj");
+  EXPECT_TRUE(textures_hold_light(path_ / "a.GLB"));
+  EXPECT_FALSE(textures_hold_light(path_ / "a.obj"));
   EXPECT_FALSE(textures_hold_light("scene.obj"));
 }
 
@@ -267,6 +299,93 @@ TEST_F(Bench, MeasuresEveryCombinationAndWritesItsFiles) {
   for (const std::string& name : {std::string("plots.gp"), std::string("fps-march.dat"),
                                   cost + "-lambert.dat", cost + "-ward.dat"})
     EXPECT_TRUE(fs::exists(path_ / "out" / name)) << name;
+}
+
+TEST_F(Bench, SumsUpTheFramesOfARun) {
+  const View view = courtyard_view();
+  BenchOptions o;
+  o.render = small();
+  o.render.schedule.interval_frames = 3;
+  o.camera = view.camera;
+  o.shadings = {Shading::lambert};
+  o.methods = {ShadowMethod::classic, ShadowMethod::linear};
+  o.frames = 8;
+  o.error_intervals = {4};
+  const Renderer first = must_render(view.scene, o.render);
+  const LightPath path = *LightPath::make({});
+  const BenchTimes times = *bench_times(first, path, o);
+  ASSERT_EQ(times.runs.size(), 2u);
+  for (const BenchRun& run : times.runs) {
+    double shadow = 0, gpu = 0, work = 0, worst = 0;
+    for (const FrameTime& f : run.frames) {
+      shadow += f.gpu_shadow;
+      gpu += f.gpu();
+      work += f.triangles_shadow + f.triangles_lit;
+      worst = std::max(worst, double(f.triangles_shadow + f.triangles_lit));
+    }
+    EXPECT_NEAR(run.shadow_share, shadow / gpu, 1e-6);
+    EXPECT_NEAR(run.work_mean, work / double(run.frames.size()), 1e-6);
+    EXPECT_EQ(run.work_worst, worst);
+  }
+  EXPECT_GT(times.runs[1].work_worst, times.runs[1].work_mean) << "maps are drawn now and then";
+  // Light positions come in whole intervals.
+  std::vector<BenchError> errors;
+  for (const int frames : {1, 4, 5, 8}) {
+    o.error_frames = frames;
+    const std::vector<BenchError> measured = *bench_errors(first, path, o);
+    ASSERT_EQ(measured.size(), 1u) << "classic is the truth itself";
+    errors.push_back(measured[0]);
+  }
+  for (const auto& [some, whole] : {std::pair{0, 1}, {2, 3}}) {
+    EXPECT_EQ(errors[some].visibility.mean, errors[whole].visibility.mean);
+    EXPECT_EQ(errors[some].psnr, errors[whole].psnr);
+    EXPECT_GT(errors[some].visibility.mean, 0);
+  }
+}
+
+// The errors once more, frame by frame.
+TEST_F(Bench, ErrorsAreMeansOverTheLightsPositions) {
+  const View view = courtyard_view();
+  BenchOptions o;
+  o.render = small();
+  o.render.shading = Shading::lambert;
+  o.camera = view.camera;
+  o.methods = {ShadowMethod::linear};
+  o.error_intervals = {4};
+  o.error_frames = 8;
+  const Renderer first = must_render(view.scene, o.render);
+  const LightPath path = *LightPath::make({});
+  const BenchError measured = (*bench_errors(first, path, o))[0];
+  o.render.schedule.interval_frames = 4;
+  o.render.schedule.interval_degrees = 0;
+  std::vector<Renderer> renderers;  // the truth's visibility and colours, then those of the method
+  for (const ShadowMethod method : {ShadowMethod::classic, ShadowMethod::linear})
+    for (const bool visibility : {true, false}) {
+      o.render.shadows = method;
+      o.render.show_visibility = visibility;
+      renderers.push_back(must_render(view.scene, o.render));
+    }
+  double mean = 0, wrong = 0, squares = 0, similarity = 0;
+  for (int f = 0; f < 8; ++f) {
+    std::vector<Image8> pictures;
+    for (Renderer& r : renderers) {
+      const auto ahead = [&](int n) { return path.direction((f + n) * o.degrees_per_frame); };
+      ASSERT_TRUE(r.draw(o.camera, {ahead(0), ahead}).ok());
+      pictures.push_back(r.read_image());
+    }
+    const VisibilityError e = visibility_error(pictures[2], pictures[0]);
+    mean += e.mean / 8;
+    wrong += e.wrong / 8;
+    for (std::size_t i = 0; i < pictures[1].texels.size(); ++i)
+      squares += std::pow((pictures[3].texels[i] - pictures[1].texels[i]) / 255.0, 2);
+    similarity += ssim(pictures[3], pictures[1]) / 8;
+  }
+  EXPECT_NEAR(measured.visibility.mean, mean, 1e-9);
+  EXPECT_NEAR(measured.visibility.wrong, wrong, 1e-9);
+  EXPECT_NEAR(measured.ssim, similarity, 1e-9);
+  squares /= 8.0 * 48 * 32 * 3;
+  EXPECT_NEAR(measured.psnr, -10 * std::log10(squares), 1e-6);
+  EXPECT_GT(squares, 0);
 }
 
 }  // namespace

@@ -114,6 +114,126 @@ TEST(ViewScene, KeepsLightAndTexcoordsAtTheirVertices) {
   EXPECT_LT(v.light_scale, 0.1);
 }
 
+// Vertices of a lit scene at one place keep the light that each of them has.
+TEST(ViewScene, LightMayDifferWherePositionsAreEqual) {
+  Scene s;
+  add_quad(s, {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}});
+  for (std::size_t i = 0; i < s.positions.size(); ++i) s.illumination.push_back({float(i), 0, 0});
+  const ViewScene v = *make_view_scene(s, {});
+  EXPECT_EQ(v.caster_positions.size(), 4u);
+  ASSERT_EQ(v.illumination.size(), 6u);
+  std::set<float> light;
+  for (const Vec3f& e : v.illumination) light.insert(e.x);
+  EXPECT_EQ(light.size(), 6u);
+}
+
+// The light's 99th percentile, by the luminance of its colour, becomes 1.
+TEST(ViewScene, TheExposureIsThatOfTheBrightestPercent) {
+  Scene s;
+  for (int i = 0; i < 67; ++i) add_quad(s, {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}});
+  ASSERT_EQ(s.positions.size(), 402u);
+  for (std::size_t i = 0; i < s.positions.size(); ++i) {  // corners that differ in light alone
+    const auto rank = float((i * 5) % 402 + 1);
+    s.illumination.push_back({3 * rank, 2 * rank, rank});
+  }
+  const double luminance = 3 * 0.2126 + 2 * 0.7152 + 0.0722;
+  const ViewScene v = *make_view_scene(s, {});
+  ASSERT_EQ(v.illumination.size(), 402u);
+  EXPECT_NEAR(1 / (v.light_scale * luminance), 397, 1);
+  for (Vec3f& e : s.illumination) e = {};
+  EXPECT_EQ(make_view_scene(s, {})->light_scale, 1);
+}
+
+TEST(ViewScene, NegativeZerosAndOppositeWindingsMakeNoCrease) {
+  Scene s;
+  const float rise = std::tan(glm::radians(10.0f));
+  add_quad(s, {{-1, -rise, 0}, {0, 0, 0}, {0, 0, -1}, {-1, -rise, -1}});
+  add_quad(s, {{0, 0, 0}, {0, 0, -1}, {1, -rise, -1}, {1, -rise, 0}});
+  for (std::size_t i = 6; i < 12; ++i)
+    for (float* c : {&s.positions[i].x, &s.positions[i].y, &s.positions[i].z})
+      if (*c == 0) *c = -0.0f;
+  const ViewScene v = *make_view_scene(s, {});
+  EXPECT_EQ(v.caster_positions.size(), 6u);
+  int shared = 0;
+  for (std::size_t i = 0; i < v.positions.size(); ++i) {
+    const double upright = std::abs(double(v.normals[i].y));
+    const bool at_ridge = v.positions[i].x == 0;
+    if (at_ridge) {
+      EXPECT_GT(upright, 0.995) << "a mean of both sides, whose areas there are as 1 to 2";
+    } else {
+      EXPECT_NEAR(upright, std::cos(glm::radians(10.0)), 1e-4);
+    }
+    shared += at_ridge;
+  }
+  EXPECT_EQ(shared, 4) << "two corners from either side";
+}
+
+// What has no texture looks alike, however its material would continue one.
+TEST(ViewScene, OnlyTexturesTellLooksApart) {
+  Scene s;
+  add_quad(s, {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}});
+  add_quad(s, {{0, 0, 1}, {1, 0, 1}, {1, 1, 1}, {0, 1, 1}});
+  s.materials.resize(4, s.materials[0]);
+  s.materials[1].wrap_u = TextureWrap::clamp;
+  s.materials[2].texture = s.materials[3].texture = 0;
+  s.materials[3].wrap_v = TextureWrap::mirror;
+  s.triangle_material = {0, 1, 2, 3};
+  s.textures.resize(1);
+  s.textures[0].image = Image8(2, 2, 3, 128);
+  s.texcoords = {{0.25f, 0.75f}};
+  s.texcoord_indices.assign(12, 0);
+  const ViewScene v = *make_view_scene(s, {});
+  ASSERT_EQ(v.clusters.size(), 3u);
+  EXPECT_EQ(v.clusters[0].look, ViewScene::Look{});
+  EXPECT_EQ(v.clusters[0].count, 6u);
+  EXPECT_EQ(v.clusters[1].look, (ViewScene::Look{0, TextureWrap::repeat, TextureWrap::repeat}));
+  EXPECT_EQ(v.clusters[2].look, (ViewScene::Look{0, TextureWrap::repeat, TextureWrap::mirror}));
+}
+
+TEST(ViewScene, ClustersLieCloseTogetherAlongEveryAxis) {
+  for (int axis = 0; axis < 3; ++axis) {
+    Scene s;
+    for (int i = 0; i < 64; ++i) {  // in an order that leaps along the row
+      const auto at = float(i * 37 % 64);
+      const auto corner = [&](float a, float b) {
+        return axis == 0 ? Vec3f{at, a, b} : axis == 1 ? Vec3f{a, at, b} : Vec3f{a, b, at};
+      };
+      add_quad(s, {corner(0, 0), corner(1, 0), corner(1, 1), corner(0, 1)});
+    }
+    ViewSceneOptions o;
+    o.cluster_triangles = 16;  // eight neighbours
+    const ViewScene v = *make_view_scene(s, o);
+    EXPECT_EQ(v.clusters.size(), 8u);
+    for (const ViewScene::Cluster& c : v.clusters) EXPECT_LT(c.radius, 4);
+  }
+}
+
+TEST(ViewScene, IsWhereAndWhatTheSceneSays) {
+  Scene s = room();
+  s.origin = {1e6, -2e6, 3};
+  s.metres_per_unit = 0.25;
+  ViewSceneOptions o;
+  o.cluster_triangles = 0;  // as if it were 1
+  o.textures_hold_light = true;
+  const ViewScene v = *make_view_scene(s, o);
+  EXPECT_EQ(v.origin, s.origin);
+  EXPECT_EQ(v.metres_per_unit, 0.25);
+  EXPECT_EQ(v.clusters.size(), s.triangle_count());
+  EXPECT_FALSE(v.textures_hold_light) << "there are none";
+  EXPECT_FALSE(v.baked());
+}
+
+// The extent of this scene is not a float.
+TEST(ViewScene, ClustersOfAllFloatsHaveAFiniteCentre) {
+  Scene s;
+  s.positions = {{-3e38f, -3e38f, 0}, {3e38f, -3e38f, 0}, {3e38f, 3e38f, 0}};
+  s.indices = {0, 1, 2};
+  ASSERT_TRUE(complete_scene(s).ok());
+  const ViewScene v = *make_view_scene(s, {});
+  ASSERT_EQ(v.clusters.size(), 1u);
+  EXPECT_EQ(v.clusters[0].centre, (Vec3f{0, 0, 0}));
+}
+
 TEST(ViewScene, DegenerateTrianglesGiveFiniteNormals) {
   Scene s;
   add_quad(s, {{1, 1, 1}, {1, 1, 1}, {1, 1, 1}, {1, 1, 1}});

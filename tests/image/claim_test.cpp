@@ -1,0 +1,118 @@
+// The sizes that image files claim, and the limits of what is believed.
+#include "libatlas/image/image_claim.h"
+
+#include <gtest/gtest.h>
+
+#include <string>
+#include <vector>
+
+#include "libatlas/image/file_kind.h"
+#include "tests/image/file_bytes.h"
+
+namespace atlas {
+namespace {
+
+using test::big;
+using test::little;
+
+std::optional<ImageClaim> claim(const std::string& text) {
+  return claim_of(std::vector<std::uint8_t>(text.begin(), text.end()));
+}
+
+// Expects these sizes once the file's first `needed` bytes are there, and nothing before.
+void expect_claim(const std::string& file, const ImageClaim& want, std::size_t needed) {
+  for (std::size_t cut = 0; cut < needed; ++cut)
+    ASSERT_FALSE(claim(file.substr(0, cut))) << cut << " bytes of " << needed;
+  for (const std::string& whole : {file.substr(0, needed), file, file + std::string(40, '\0')}) {
+    const auto got = claim(whole);
+    ASSERT_TRUE(got);
+    EXPECT_EQ(got->width, want.width);
+    EXPECT_EQ(got->height, want.height);
+    EXPECT_EQ(got->channels, want.channels);
+  }
+}
+
+// A segment, or a frame header of 700 x 300 texels (the height comes first) of three channels.
+std::string segment(char marker, const std::string& data) {
+  return std::string("\xff") + marker + big(std::uint32_t(data.size()) + 2, 2) + data;
+}
+std::string frame(char marker) {
+  return segment(marker, "\x08" + big(300, 2) + big(700, 2) + "\3" + std::string(9, '\1'));
+}
+
+TEST(ImageClaim, OfAJpegFileIsThatOfItsFrame) {
+  const std::string start = "\xff\xd8";
+  // What a segment that is no frame holds may look like one.
+  const std::string decoy = big(9, 2) + frame('\xc0').substr(2);
+  std::vector<std::string> before = {
+      "",         "\xff",         "\xff\xff\xff",
+      "stray",    "\xff\x01",     "\xff\xd0",
+      "\xff\xd8", "\xff\xd7\xff", segment('\xfe', std::string(70, '\xc0'))};
+  for (const char marker : {'\xc4', '\xc8', '\xcc', '\xdb', '\xe1', '\xbf'})
+    before.push_back(segment(marker, decoy));
+  before.push_back(std::string("\xff\x00", 2));
+  for (const std::string& lead : before)
+    for (const char marker : {'\xc0', '\xc1', '\xc2', '\xc3', '\xc5', '\xcb', '\xcf'})
+      expect_claim(start + lead + frame(marker), {700, 300, 3}, 2 + lead.size() + 10);
+  EXPECT_FALSE(claim(start + segment('\xc4', decoy) + std::string(30, '\0')));
+}
+
+TEST(ImageClaim, OfAGifFileIsItsScreen) {
+  expect_claim("GIF89a" + little(700, 2) + little(300, 2) + "abc", {700, 300, 4}, 10);
+  expect_claim("GIF87a" + little(65535, 2) + little(1, 2), {65535, 1, 4}, 10);
+}
+
+// The image is what is right of and below its offset.
+TEST(ImageClaim, OfAJpeg2000FileIsThatOfItsStream) {
+  const std::string stream = "\xff\x4f\xff\x51" + big(47, 2) + big(0, 2) + big(1000, 4) +
+                             big(2000, 4) + big(300, 4) + big(1700, 4) + std::string(16, '\7') +
+                             big(5, 2);
+  expect_claim(stream, {700, 300, 5}, 42);
+  const std::string boxes = big(12, 4) + "jP  \r\n\x87\n" + big(0, 4) + "jp2c";
+  expect_claim(boxes + stream, {700, 300, 5}, boxes.size() + 42);
+  EXPECT_FALSE(claim("\x89PNG\r\n\x1a\n" + stream)) << "it takes no memory to open";
+}
+
+TEST(ImageClaim, SidesAndChannelsAreAtLeastOne) {
+  EXPECT_TRUE(check_claim({1, 1, 1}, 1, "a").ok());
+  for (const ImageClaim& wrong : {ImageClaim{0, 1, 1}, {1, 0, 1}, {1, 1, 0}, {-1, -1, 1}}) {
+    const Status status = check_claim(wrong, 1'000'000, "a");
+    EXPECT_EQ(status.code(), ErrorCode::bad_input);
+    EXPECT_NE(status.message().find("the file is damaged"), std::string::npos);
+  }
+}
+
+// Each limit itself is still believed. A file's bytes hold values, however wide these are in
+// memory.
+TEST(ImageClaim, IsBelievedUpToTheLimits) {
+  EXPECT_TRUE(check_claim({8192, 8192, 1, 1, 1}, 0, "a").ok()) << "64 MiB";
+  EXPECT_EQ(check_claim({8192, 8193, 1, 1, 1}, 0, "a").code(), ErrorCode::bad_input);
+  constexpr std::uint64_t kValues = 8192 * 8192 * 3;
+  for (const double packing : {1.0, 4.0}) {
+    const std::uint64_t least = kValues / std::uint64_t(packing);
+    EXPECT_TRUE(check_claim({8192, 8192, 3, 4, packing}, least, "a").ok());
+    const Status status = check_claim({8192, 8192, 3, 4, packing}, least - 1, "a.tif");
+    EXPECT_EQ(status.code(), ErrorCode::bad_input);
+    EXPECT_EQ(status.message().rfind("a.tif: claims 8192 x 8192 texels of 3 channels (768 MiB)", 0),
+              0u)
+        << status.message();
+  }
+  EXPECT_TRUE(check_claim({16384, 16384, 4, 4, kPackedByte}, 1 << 30, "a").ok());
+  EXPECT_EQ(check_claim({16384, 16385, 4, 4, kPackedByte}, 1 << 30, "a").code(),
+            ErrorCode::unsupported);
+}
+
+TEST(ImageKind, IsToldByTheFirstBytes) {
+  const auto kind = [](const std::string& s) {
+    return image_extension(std::vector<std::uint8_t>(s.begin(), s.end()));
+  };
+  EXPECT_EQ(kind("\x89PNG\r\n\x1a\nrest"), ".png");
+  EXPECT_EQ(kind("\x89PNG\r\n\x1a\n"), ".png");
+  EXPECT_EQ(kind("\x89PNG\n\x1a\nrest"), "") << "line ends that were changed";
+  EXPECT_EQ(kind("\xff\xd8\xff\xe0"), ".jpg");
+  for (const char* other : {"", "\xff\xd8", "\x89PNG\r\n\x1a", "RIFF", "GIF89a"})
+    EXPECT_EQ(kind(other), "");
+}
+
+}  // namespace
+}  // namespace atlas
