@@ -51,6 +51,9 @@ Status check_options(const UnwrapOptions& options) {
     return bad(fmt::format("mip_levels is {} (0 to 10)", options.mip_levels));
   if (options.alignment < 1 || options.alignment > options.page_size / 4)
     return bad(fmt::format("alignment is {} (1 to a quarter of page_size)", options.alignment));
+  if (powers && !std::has_single_bit(std::uint32_t(options.alignment)))
+    return bad(fmt::format("alignment is {} (a power of two for square or several pages)",
+                           options.alignment));
   if (alignment(options) > options.page_size / 4 || padding(options) > options.page_size / 4)
     return bad(fmt::format(
         "mip_levels is {}, whose cells of {} texels are more than a quarter of page_size",
