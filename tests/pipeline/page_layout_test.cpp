@@ -117,6 +117,24 @@ TEST(PlainPage, GrowsWithItsCharts) {
   EXPECT_LE(plain_page(shape, false).second, 256);
 }
 
+TEST(PlainPage, ChartsAreCountedOnTheirOwnPages) {
+  TempFolder folder;
+  ExportOptions options;
+  options.target = folder / "world.obj";
+  options.atlas_size = 64;
+  options.charts_only = true;
+  options.plain_pages = 3;
+  const auto report = export_world(lit_scene(soup(9, 5)), options, {}, {});
+  ASSERT_TRUE(report.ok()) << report.status().message();
+  ASSERT_EQ(report->pages.size(), 3u);
+  std::size_t charts = 0;
+  for (const PageReport& page : report->pages) {
+    EXPECT_GT(page.charts, 0u);
+    charts += page.charts;
+  }
+  EXPECT_EQ(charts, report->charts.size());
+}
+
 TEST(PlainPage, IsLongerWhereAChartIsLong) {
   Shape shape = soup(200, 5);
   const double side = std::sqrt(surface_area(shape));
