@@ -63,6 +63,42 @@ TEST(Unwrap, AlignmentIsKept) {
   }
 }
 
+// With mip levels, cells are as large as both multiples allow.
+TEST(Unwrap, AlignmentAndMipLevelsAreKeptTogether) {
+  const LoadedScene scene = lit_room(6);
+  UnwrapOptions options{.page_size = 512};
+  options.alignment = 3;
+  options.mip_levels = 2;
+  const auto mesh = unwrap_mesh(view_of(scene.scene), options, {});
+  ASSERT_TRUE(mesh.ok()) << mesh.status().message();
+  EXPECT_EQ(mesh->pages[0].width % 12, 0);
+  EXPECT_EQ(mesh->pages[0].height % 12, 0);
+  for (const ChartPlacement& p : mesh->placements) {
+    EXPECT_EQ((p.x - options.padding) % 12, 0);
+    EXPECT_EQ((p.y - options.padding) % 12, 0);
+  }
+}
+
+// A square sheet takes a square page up to its padding.
+TEST(Unwrap, PaddingIsTheWiderOfThatAskedForAndThatOfMipLevels) {
+  const Shape sheet = grid(4, 4);
+  MeshView view;
+  view.positions = sheet.positions;
+  view.indices = sheet.indices;
+  struct Case {
+    std::int32_t padding, mip_levels, kept;
+  };
+  for (const Case& c : {Case{0, 0, 0}, Case{5, 0, 5}, Case{0, 1, 1}, Case{8, 1, 8}, Case{1, 4, 8},
+                        Case{16, 4, 16}}) {
+    UnwrapOptions options{.page_size = 64, .padding = c.padding, .square = true};
+    options.mip_levels = c.mip_levels;
+    const auto mesh = unwrap_mesh(view, options, {});
+    ASSERT_TRUE(mesh.ok()) << mesh.status().message();
+    const double side = (64.0 - 2 * c.kept) / 64;
+    EXPECT_NEAR(mesh->utilization, side * side, 0.01) << c.padding << ' ' << c.mip_levels;
+  }
+}
+
 // Compares directions of edges in uvs before and after packing.
 TEST(Unwrap, ChartsAreNotTurnedWhereThatIsForbidden) {
   for (const Shape& shape : {torus(16, 8), together(grid(9, 9, 1, 3), grid(9, 2, 5, 1))}) {

@@ -205,7 +205,14 @@ TEST(Unwrap, WrongOptionsAreNamed) {
     o.page_size = 1000;
     o.square = true;
   });
+  expect("page_size is 32768", [](UnwrapOptions& o) { o.page_size = 32768; });
+  expect("page_size is 1000", [](UnwrapOptions& o) {
+    o.page_size = 1000;
+    o.pages = 2;
+  });
   expect("padding is -1", [](UnwrapOptions& o) { o.padding = -1; });
+  expect("padding is 513", [](UnwrapOptions& o) { o.padding = 513; });
+  expect("alignment is 1024", [](UnwrapOptions& o) { o.alignment = 1024; });
   expect("mip_levels is -1", [](UnwrapOptions& o) { o.mip_levels = -1; });
   expect("mip_levels is 11", [](UnwrapOptions& o) { o.mip_levels = 11; });
   expect("mip_levels is 5, whose cells of 32 texels", [](UnwrapOptions& o) {
