@@ -140,7 +140,9 @@ Result<UnwrappedMesh> unwrap_mesh(const MeshView& mesh, const UnwrapOptions& opt
   const PlacedCharts placed{result.charts, result.placements, result.pages};
   const ChartedMesh charted(mesh.indices, result.charts);
   std::vector<Vec2f> rounded;
-  result.thin_triangles = round_uvs(page_uvs(placed), charted.view().uv_indices, rounded);
+  // Light is baked where the placements say, and gutters tolerate a texel.
+  const double farthest = options.mip_levels > 0 ? texel_of_longest(result.pages) : 1;
+  result.thin_triangles = round_uvs(page_uvs(placed), charted.view().uv_indices, rounded, farthest);
   if (result.thin_triangles > 0)
     context.say(fmt::format("{} slivers have no area or are turned over in uvs rounded to floats",
                             result.thin_triangles));

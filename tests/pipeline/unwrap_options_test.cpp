@@ -4,12 +4,15 @@
 
 #include <algorithm>
 #include <atomic>
+#include <cmath>
+#include <cstddef>
 #include <cstdint>
 #include <string_view>
 #include <vector>
 
 #include "libatlas/bake/bake.h"
 #include "libatlas/pipeline/unwrap.h"
+#include "tests/pipeline/flat_mesh.h"
 #include "tests/pipeline/lit_scene.h"
 #include "tests/pipeline/unwrap_checks.h"
 #include "tests/support/shapes.h"
@@ -160,6 +163,38 @@ TEST(Unwrap, PlacementsSayWhereUvsLie) {
       EXPECT_NEAR(uv.y * page.height, at.y, 2e-3) << seed;
     }
   }
+}
+
+// Slivers that lean on each other are opened by moves of two texels of such a page. Where light is
+// baked, gutters tolerate one.
+TEST(Unwrap, OnPagesToBakeUvsStayWithinATexelOfTheirPlacements) {
+  const FlatMesh slivers = leaning_slivers();
+  std::vector<Vec3f> positions;
+  for (const Vec2d& p : slivers.uvs)
+    positions.push_back({float((p.x - 0.4) * 0x1p24), float((p.y - 0.5) * 0x1p24), 0});
+  MeshView view;
+  view.positions = positions;
+  view.indices = slivers.corners;
+  const auto farthest = [&](std::int32_t mip_levels) {
+    UnwrapOptions options{.page_size = 16384, .packing = PackPreset::fast, .square = true};
+    options.mip_levels = mip_levels;
+    options.charts.min_fill = 0;
+    const auto mesh = unwrap_mesh(view, options, {});
+    EXPECT_TRUE(mesh.ok()) << mesh.status().message();
+    if (!mesh.ok()) return 0.0;
+    double most = 0;
+    for (std::size_t i = 0; i < slivers.corners.size(); ++i) {
+      const ChartPlacement& p = mesh->placements[mesh->charts.triangle_chart[i / 3]];
+      const Vec2d at = page_texel(p, mesh->charts.uvs[mesh->charts.triangle_uv[i]]);
+      const Vec2f uv = mesh->uvs[mesh->indices[i]];
+      const Extent page = mesh->pages[std::size_t(p.page)];
+      most =
+          std::max({most, std::abs(uv.x * page.width - at.x), std::abs(uv.y * page.height - at.y)});
+    }
+    return most;
+  };
+  EXPECT_GT(farthest(0), 1.5) << "the test is too easy";
+  for (const std::int32_t mip_levels : {1, 2, 4}) EXPECT_LE(farthest(mip_levels), 1.01);
 }
 
 TEST(Unwrap, CancelledAfterPackingGivesNoMesh) {
