@@ -45,16 +45,20 @@ std::vector<Vec2d> page_uvs(const PlacedCharts& placed) {
   return uvs;
 }
 
+double texel_of_longest(std::span<const Extent> pages) {
+  std::int32_t longest = 1;
+  for (const Extent& page : pages) longest = std::max({longest, page.width, page.height});
+  return 1.0 / longest;
+}
+
 AssembledWorld assemble_world(const Scene& scene, const PlacedCharts& placed, const WorldMesh& mesh,
                               bool baked) {
   AssembledWorld assembled;
   World& world = assembled.world;
   world.origin = scene.origin;
   world.positions = scene.positions;
-  std::int32_t longest = 1;
-  for (const Extent& page : placed.pages) longest = std::max({longest, page.width, page.height});
-  assembled.thin_triangles =
-      round_uvs(page_uvs(placed), mesh.uv_indices, world.uvs, baked ? 1.0 / longest : 1);
+  assembled.thin_triangles = round_uvs(page_uvs(placed), mesh.uv_indices, world.uvs,
+                                       baked ? texel_of_longest(placed.pages) : 1);
   world.pages.resize(placed.pages.size());
   for (std::size_t t = 0; t < mesh.triangle_chart.size(); ++t) {
     const ChartPlacement& placement = placed.placements[mesh.triangle_chart[t]];

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 
 #include "libatlas/bake/placement.h"
@@ -30,9 +31,9 @@ Status check_options(const ExportOptions& o) {
             "ExportOptions::keep_scene: a scene that is kept has its uvs on one page (leave out "
             "ExportOptions::plain_pages)"};
   }
-  const bool power_of_two = (o.atlas_size & (o.atlas_size - 1)) == 0;
   if (o.atlases < 1) return out_of_range("atlases", "at least 1");
-  if (o.atlas_size < 64 || o.atlas_size > 16384 || !power_of_two) {
+  if (o.atlas_size < 64 || o.atlas_size > 16384 ||
+      !std::has_single_bit(std::uint32_t(o.atlas_size))) {
     return out_of_range("atlas_size", "a power of two from 64 to 16384");
   }
   if (!(o.texel_metres >= 0) || !std::isfinite(o.texel_metres))

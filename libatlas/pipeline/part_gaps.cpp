@@ -29,6 +29,38 @@ std::vector<double> clearances(std::span<const ChartPlacement> placements) {
   return clearance;
 }
 
+// Does fill_pages_apart(), except that progress may end before 1.
+Result<PagesOfParts> filled_apart(const PlainUvs& uvs, const LayoutOptions& options,
+                                  ChartSet& charts, const Context& context) {
+  const double max_stretch = uvs.options.max_stretch;
+  const double texels = double(options.pages) * options.page_size * options.page_size;
+  const std::vector<Vec2d> wanted(charts.charts.size(), {uvs.density, uvs.density});
+  PagesOfParts pages;
+  pages.opened = open_part_gaps({uvs.mesh, max_stretch, texels}, wanted, charts, context).charts;
+  Result<PageLayout> layout =
+      fill_pages(uvs, options, charts, part_of_stage(context, "pack", 0, 0.5));
+  if (!layout.ok()) return layout.status();
+  pages.layout = std::move(*layout);
+  pages.left = left_part_gaps(uvs.mesh, charts, pages.layout.placements, context);
+  if (pages.left.near_after == 0) return pages;
+
+  ChartSet wider = charts;
+  std::vector<double> clearance = clearances(pages.layout.placements);
+  for (double& c : clearance) c *= kSmaller;
+  const std::size_t opened = widen_gaps(uvs.mesh, {clearance, max_stretch}, wider, context).charts;
+  if (opened == 0) return pages;
+  layout = fill_pages(uvs, options, wider, part_of_stage(context, "pack", 0.5, 1));
+  if (context.cancelled()) return Status::cancelled();
+  if (!layout.ok()) return pages;
+  const GapReport left = left_part_gaps(uvs.mesh, wider, layout->placements, context);
+  if (!(left.near_after < pages.left.near_after)) return pages;
+  pages.opened = std::max(pages.opened, opened);
+  pages.layout = std::move(*layout);
+  pages.left = left;
+  charts = std::move(wider);
+  return pages;
+}
+
 }  // namespace
 
 GapReport open_part_gaps(const PagesOfCharts& pages, std::span<const Vec2d> densities,
@@ -69,32 +101,8 @@ GapReport left_part_gaps(const MeshView& mesh, const ChartSet& charts,
 
 Result<PagesOfParts> fill_pages_apart(const PlainUvs& uvs, const LayoutOptions& options,
                                       ChartSet& charts, const Context& context) {
-  const double max_stretch = uvs.options.max_stretch;
-  const double texels = double(options.pages) * options.page_size * options.page_size;
-  const std::vector<Vec2d> wanted(charts.charts.size(), {uvs.density, uvs.density});
-  PagesOfParts pages;
-  pages.opened = open_part_gaps({uvs.mesh, max_stretch, texels}, wanted, charts, context).charts;
-  Result<PageLayout> layout =
-      fill_pages(uvs, options, charts, part_of_stage(context, "pack", 0, 0.5));
-  if (!layout.ok()) return layout.status();
-  pages.layout = std::move(*layout);
-  pages.left = left_part_gaps(uvs.mesh, charts, pages.layout.placements, context);
-  if (pages.left.near_after == 0) return pages;
-
-  ChartSet wider = charts;
-  std::vector<double> clearance = clearances(pages.layout.placements);
-  for (double& c : clearance) c *= kSmaller;
-  const std::size_t opened = widen_gaps(uvs.mesh, {clearance, max_stretch}, wider, context).charts;
-  if (opened == 0) return pages;
-  layout = fill_pages(uvs, options, wider, part_of_stage(context, "pack", 0.5, 1));
-  if (context.cancelled()) return Status::cancelled();
-  if (!layout.ok()) return pages;
-  const GapReport left = left_part_gaps(uvs.mesh, wider, layout->placements, context);
-  if (!(left.near_after < pages.left.near_after)) return pages;
-  pages.opened = std::max(pages.opened, opened);
-  pages.layout = std::move(*layout);
-  pages.left = left;
-  charts = std::move(wider);
+  Result<PagesOfParts> pages = filled_apart(uvs, options, charts, context);
+  context.report("pack", 1);
   return pages;
 }
 

@@ -75,8 +75,11 @@ std::string budget_text(std::uint32_t pages, std::int32_t side) {
 
 std::string charts_reason(const ChartOptions& charts) {
   if (charts.cone_degrees > 0) {
-    return fmt::format("normals within {:g}° of a chart's axis: planar stretch at most {:.3f}",
-                       charts.cone_degrees, 1 / std::cos(charts.cone_degrees * M_PI / 180));
+    const std::string cone =
+        fmt::format("normals within {:g}° of a chart's axis", charts.cone_degrees);
+    if (charts.cone_degrees >= 90) return cone;  // a projection may stretch without limit
+    return fmt::format("{}: planar stretch at most {:.3f}", cone,
+                       1 / std::cos(charts.cone_degrees * M_PI / 180));
   }
   return fmt::format(
       "stretch at most {:g} over 99.9 % of a chart; the solver runs only for charts that a planar "

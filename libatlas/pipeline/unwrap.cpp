@@ -51,6 +51,9 @@ Status check_options(const UnwrapOptions& options) {
     return bad(fmt::format("mip_levels is {} (0 to 10)", options.mip_levels));
   if (options.alignment < 1 || options.alignment > options.page_size / 4)
     return bad(fmt::format("alignment is {} (1 to a quarter of page_size)", options.alignment));
+  if (powers && !std::has_single_bit(std::uint32_t(options.alignment)))
+    return bad(fmt::format("alignment is {} (a power of two for square or several pages)",
+                           options.alignment));
   if (alignment(options) > options.page_size / 4 || padding(options) > options.page_size / 4)
     return bad(fmt::format(
         "mip_levels is {}, whose cells of {} texels are more than a quarter of page_size",
@@ -137,7 +140,9 @@ Result<UnwrappedMesh> unwrap_mesh(const MeshView& mesh, const UnwrapOptions& opt
   const PlacedCharts placed{result.charts, result.placements, result.pages};
   const ChartedMesh charted(mesh.indices, result.charts);
   std::vector<Vec2f> rounded;
-  result.thin_triangles = round_uvs(page_uvs(placed), charted.view().uv_indices, rounded);
+  // Light is baked where the placements say, and gutters tolerate a texel.
+  const double farthest = options.mip_levels > 0 ? texel_of_longest(result.pages) : 1;
+  result.thin_triangles = round_uvs(page_uvs(placed), charted.view().uv_indices, rounded, farthest);
   if (result.thin_triangles > 0)
     context.say(fmt::format("{} slivers have no area or are turned over in uvs rounded to floats",
                             result.thin_triangles));

@@ -66,6 +66,35 @@ TEST(Advice, TexelsAsLongAsChartsAreNamed) {
   EXPECT_TRUE(advice_on(report_of(2, 1, 16), options).empty());
 }
 
+TEST(Advice, LimitsThemselvesNeedNone) {
+  ExportReport report = report_of(255, 1, 512);
+  report.uv_utilization = 0.3;
+  EXPECT_TRUE(advice_on(report, {}).empty());
+  report.charts.resize(256);
+  EXPECT_TRUE(holds(advice_on(report, {}), "256 charts have 307 texels each on average"));
+  ExportOptions options;
+  options.texel_metres = 0.005;
+  report = report_of(100, 8, 1024);
+  report.scale = 0.5;
+  EXPECT_TRUE(advice_on(report, options).empty());
+}
+
+// Texels that the pages could not hold are few because of the pages, not because of their length.
+TEST(Advice, FewTexelsOfFullPagesAreNotCalledTooLong) {
+  ExportReport report = report_of(16, 1, 16);
+  report.scale = 0.2;
+  ExportOptions options;
+  options.texel_metres = 0.005;
+  EXPECT_TRUE(holds(advice_on(report, options), "texels are 25 mm long"));
+}
+
+TEST(Advice, PagesWithoutLightNeedNone) {
+  ExportReport report = report_of(16000, 200, 64);
+  EXPECT_FALSE(advice_on(report, {}).empty());
+  report.gpu_bytes = 0;
+  EXPECT_TRUE(advice_on(report, {}).empty());
+}
+
 TEST(Advice, TransparencyIsNamed) {
   Scene scene;
   scene.materials = {{.name = "wall"}, {.name = "fence"}, {.name = "glass"}};
@@ -93,6 +122,8 @@ TEST(Advice, UvChartsOfWhichNoneIsKeptAreNamed) {
   ExportReport report;
   ExportOptions options;
   options.charts.keep_uv_charts = true;
+  EXPECT_TRUE(holds(advice_on(report, options), "ChartOptions::keep_uv_charts kept no chart"));
+  report.repairs.reflattened_charts = 9;
   EXPECT_TRUE(holds(advice_on(report, options), "ChartOptions::keep_uv_charts kept no chart"));
   report.repairs.kept_charts = 1;
   EXPECT_TRUE(advice_on(report, options).empty());
@@ -149,6 +180,21 @@ TEST(Advice, LightThatTheToneCurveLosesIsNamed) {
   EXPECT_TRUE(
       holds(with_white(90), "light of 100, the geometric mean, is shown white like all above 90"));
   EXPECT_TRUE(holds(with_white(7e6f), "is shown black; white begins at 7e+06"));
+}
+
+// A measured white with a given exposure is no measured white. A scene without any light is black
+// whatever the tone curve.
+TEST(Advice, AGivenExposureCountsLikeAGivenWhite) {
+  ExportReport report = report_of(100, 8, 1024);
+  report.luminance.log_average = report.luminance.percentile99 = 100;
+  report.tone.scale = 1.0F / 90;
+  report.exposure_white = 90;
+  ExportOptions options;
+  EXPECT_TRUE(advice_on(report, options).empty());
+  options.tone.exposure_stops = 2;
+  EXPECT_TRUE(holds(advice_on(report, options), "is shown white like all above 90"));
+  report.luminance = {};
+  EXPECT_TRUE(advice_on(report, options).empty());
 }
 
 TEST(Advice, TexelsThatPagesCannotHoldAreNamed) {

@@ -4,9 +4,11 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <atomic>
 #include <cmath>
 #include <random>
+#include <span>
 #include <vector>
 
 #include "tests/support/atlas_measure.h"
@@ -189,6 +191,32 @@ TEST(DrawOnce, StaysWhereEveryMoveWouldTouchNeighbours) {
     drawn.draw(1);
     EXPECT_LE(drawn.measured().bleed, bleed) << seed;
   }
+}
+
+// The kite lies a little more than a texel from the page's edges, so most moves are too long.
+TEST(DrawOnce, ChartsStayATexelOffThePagesEdge) {
+  std::size_t moved = 0;
+  for (unsigned seed = 0; seed < 600; ++seed) {
+    const Drawn walled = kite_between_walls(seed, 2.1);
+    std::vector<Vec2d> texels;
+    Vec2d low{kPage, kPage};
+    for (std::uint32_t i = 0; i < walled.set.charts[0].uv_count; ++i) {
+      texels.push_back({kPage * double(walled.uvs[i].x), kPage * double(walled.uvs[i].y)});
+      low = {std::min(low.x, texels[i].x), std::min(low.y, texels[i].y)};
+    }
+    for (Vec2d& t : texels)
+      t = {t.x - low.x + 1 + seed / 6000.0, t.y - low.y + 1 + seed % 7 / 70.0};
+    const auto corners = std::span(walled.set.triangle_uv)
+                             .first(3 * std::size_t(walled.set.charts[0].triangle_count));
+    Drawn drawn;
+    drawn.add(texels, {corners.begin(), corners.end()});
+    moved += drawn.draw(1).moves.size();
+    for (const Vec2f uv : drawn.uvs) {
+      EXPECT_GE(kPage * uv.x, 1) << seed;
+      EXPECT_GE(kPage * uv.y, 1) << seed;
+    }
+  }
+  EXPECT_GT(moved, 5u);
 }
 
 TEST(DrawOnce, LeavesChartsThatCancellingLeft) {

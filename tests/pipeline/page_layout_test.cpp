@@ -28,7 +28,69 @@ TEST(Layout, RefusesDensitiesThatAreMissingOrNotAboveZero) {
   EXPECT_EQ(code({{10, 10}}), ErrorCode::bad_input);
   EXPECT_EQ(code({}), ErrorCode::bad_input);
   EXPECT_EQ(code({{10, 10}, {0, 10}}), ErrorCode::bad_input);
+  EXPECT_EQ(code({{10, 0}, {10, 10}}), ErrorCode::bad_input);
+  EXPECT_EQ(code({{10, 10}, {10, -1}}), ErrorCode::bad_input);
   EXPECT_EQ(code({{10, 10}, {10, std::nan("")}}), ErrorCode::bad_input);
+}
+
+ChartSet boxes_of(const std::vector<Vec2d>& sizes) {
+  ChartSet charts;
+  for (const Vec2d size : sizes) {
+    Chart& chart = charts.charts.emplace_back();
+    chart.size = size;
+    chart.distortion.uv_area = size.x * size.y;
+  }
+  return charts;
+}
+
+TEST(Layout, TheFillingDensityCoversAllTexels) {
+  EXPECT_DOUBLE_EQ(filling_density(boxes_of({{2, 1}, {1, 1}, {1, 1}}), 400), 10);
+  EXPECT_EQ(filling_density(boxes_of({{2, 0}}), 400), 1);
+  EXPECT_EQ(filling_density({}, 400), 1);
+}
+
+// A side that is short already stays as it is, and no other becomes shorter than the shortest that
+// is allowed.
+TEST(Layout, ScalingMakesNoSideShorterThanAllowed) {
+  const ChartSet charts = boxes_of({{400, 4}, {300, 20}, {200, 100}});
+  const std::vector<Vec2d> densities(3, {1, 1});
+  LayoutOptions options{.pages = 1, .page_size = 128, .padding = 1, .alignment = 1};
+  options.allow_rotation = true;
+  const Result<PageLayout> layout = lay_out_pages(charts, densities, options, {});
+  ASSERT_TRUE(layout.ok()) << layout.status().message();
+  ASSERT_LT(layout->scale, 0.5);
+  for (std::size_t c = 0; c < 3; ++c) {
+    const ChartPlacement& p = layout->placements[c];
+    const Vec2d size = charts.charts[c].size;
+    const auto texels = [&](double side) {
+      return std::max(side * layout->scale, std::min(16.0, side));
+    };
+    EXPECT_DOUBLE_EQ(size.x * p.texels_per_unit.x, texels(size.x)) << c;
+    EXPECT_DOUBLE_EQ(size.y * p.texels_per_unit.y, texels(size.y)) << c;
+  }
+}
+
+// Long boxes beside high ones: some are turned.
+TEST(Layout, BoxesHoldTheirChartsWhicheverWayTheyLie) {
+  const ChartSet charts = boxes_of({{120, 30}, {90, 30}, {90, 30}, {90, 30}, {90, 30}});
+  const std::vector<Vec2d> densities(5, {1, 1});
+  const LayoutOptions options{.pages = 1, .page_size = 128, .padding = 0, .alignment = 1};
+  const Result<PageLayout> layout = lay_out_pages(charts, densities, options, {});
+  ASSERT_TRUE(layout.ok()) << layout.status().message();
+  int turned = 0;
+  for (const ChartPlacement& p : layout->placements) {
+    const Vec2d size = charts.charts[p.chart].size;
+    const Vec2d a = page_texel(p, {0, 0}), b = page_texel(p, size);
+    const double slack = 1e-9;
+    EXPECT_GE(std::min(a.x, b.x), p.x - slack);
+    EXPECT_GE(std::min(a.y, b.y), p.y - slack);
+    EXPECT_LE(std::max(a.x, b.x), p.x + p.width + slack);
+    EXPECT_LE(std::max(a.y, b.y), p.y + p.height + slack);
+    EXPECT_EQ(p.width, std::ceil(std::fabs(b.x - a.x) - slack));
+    EXPECT_EQ(p.height, std::ceil(std::fabs(b.y - a.y) - slack));
+    turned += p.sine != 0;
+  }
+  EXPECT_GT(turned, 0);
 }
 
 // Returns four ring sectors of three quarters of a turn each, and strips.
@@ -115,6 +177,24 @@ TEST(PlainPage, GrowsWithItsCharts) {
   EXPECT_GT(grown, 256);  // 200 charts of 1024 texels each need 453 texels squared
   EXPECT_LE(grown, 512);
   EXPECT_LE(plain_page(shape, false).second, 256);
+}
+
+TEST(PlainPage, ChartsAreCountedOnTheirOwnPages) {
+  TempFolder folder;
+  ExportOptions options;
+  options.target = folder / "world.obj";
+  options.atlas_size = 64;
+  options.charts_only = true;
+  options.plain_pages = 3;
+  const auto report = export_world(lit_scene(soup(9, 5)), options, {}, {});
+  ASSERT_TRUE(report.ok()) << report.status().message();
+  ASSERT_EQ(report->pages.size(), 3u);
+  std::size_t charts = 0;
+  for (const PageReport& page : report->pages) {
+    EXPECT_GT(page.charts, 0u);
+    charts += page.charts;
+  }
+  EXPECT_EQ(charts, report->charts.size());
 }
 
 TEST(PlainPage, IsLongerWhereAChartIsLong) {

@@ -126,5 +126,52 @@ TEST(PartGaps, OneColourStaysAndNoChartOutgrowsItsPage) {
   EXPECT_EQ(textures[0].texels_per_unit.x, textures[0].texels_per_unit.y);
 }
 
+TEST(PartGaps, TheCoarserDensityDecides) {
+  const Stair stair;
+  const auto near = [&](Vec2d density) {
+    ChartPlacement placement;
+    placement.texels_per_unit = density;
+    return left_part_gaps(stair.view, stair.charts, {&placement, 1}, {}).near_after;
+  };
+  EXPECT_GT(near({kDensity, kDensity}), 0);
+  EXPECT_EQ(near({kDensity, 8 * kDensity}), near({kDensity, kDensity}));
+  EXPECT_EQ(near({8 * kDensity, kDensity}), near({kDensity, kDensity}));
+}
+
+// Charts that want more texels than the pages hold become smaller, and so do their gaps.
+TEST(PartGaps, AreOpenedForTheLikelyScale) {
+  const std::vector<Vec2d> fine{{8 * kDensity, 8 * kDensity}};
+  Stair roomy, tight;
+  PagesOfCharts pages = roomy.pages();
+  pages.texels = 1e9;
+  EXPECT_EQ(open_part_gaps(pages, fine, roomy.charts, {}).charts, 0u);
+  pages = tight.pages();
+  // The ring takes about three square units, and pages are filled to three fifths.
+  pages.texels = 3 * kDensity * kDensity / 0.6;
+  EXPECT_EQ(open_part_gaps(pages, fine, tight.charts, {}).charts, 1u);
+}
+
+TEST(PartGaps, OnlyOpenedChartsThatOutgrowTheirPageGetFewerTexels) {
+  Stair stair;
+  const Vec2d steep{kDensity, 4 * kDensity};  // longer along v than along u
+  std::vector<ChartTexture> textures(1);
+  PagesOfCharts pages = stair.pages();
+  const auto opened = [&](ChartContent content, std::int32_t max_side) {
+    textures[0].texels_per_unit = steep;
+    textures[0].content = content;
+    pages.max_side = max_side;
+    open_part_gaps(pages, textures, stair.charts, {});
+    return textures[0].texels_per_unit;
+  };
+  EXPECT_EQ(opened(ChartContent::varied, 10000), steep);
+  EXPECT_EQ(opened(ChartContent::uniform, 1), steep);
+  const double height = stair.charts.charts[0].size.y * steep.y;
+  const auto limit = std::int32_t(height) - 1;
+  ASSERT_GT(limit, stair.charts.charts[0].size.x * steep.x);
+  const Vec2d lowered = opened(ChartContent::varied, limit);
+  EXPECT_NEAR(stair.charts.charts[0].size.y * lowered.y, limit, 1e-9 * limit);
+  EXPECT_DOUBLE_EQ(lowered.y, 4 * lowered.x);
+}
+
 }  // namespace
 }  // namespace atlas::test

@@ -3,11 +3,16 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <cstddef>
 #include <cstdint>
+#include <string_view>
 #include <vector>
 
 #include "libatlas/bake/bake.h"
 #include "libatlas/pipeline/unwrap.h"
+#include "tests/pipeline/flat_mesh.h"
 #include "tests/pipeline/lit_scene.h"
 #include "tests/pipeline/unwrap_checks.h"
 #include "tests/support/shapes.h"
@@ -63,6 +68,42 @@ TEST(Unwrap, AlignmentIsKept) {
   }
 }
 
+// With mip levels, cells are as large as both multiples allow.
+TEST(Unwrap, AlignmentAndMipLevelsAreKeptTogether) {
+  const LoadedScene scene = lit_room(6);
+  UnwrapOptions options{.page_size = 512};
+  options.alignment = 3;
+  options.mip_levels = 2;
+  const auto mesh = unwrap_mesh(view_of(scene.scene), options, {});
+  ASSERT_TRUE(mesh.ok()) << mesh.status().message();
+  EXPECT_EQ(mesh->pages[0].width % 12, 0);
+  EXPECT_EQ(mesh->pages[0].height % 12, 0);
+  for (const ChartPlacement& p : mesh->placements) {
+    EXPECT_EQ((p.x - options.padding) % 12, 0);
+    EXPECT_EQ((p.y - options.padding) % 12, 0);
+  }
+}
+
+// A square sheet takes a square page up to its padding.
+TEST(Unwrap, PaddingIsTheWiderOfThatAskedForAndThatOfMipLevels) {
+  const Shape sheet = grid(4, 4);
+  MeshView view;
+  view.positions = sheet.positions;
+  view.indices = sheet.indices;
+  struct Case {
+    std::int32_t padding, mip_levels, kept;
+  };
+  for (const Case& c : {Case{0, 0, 0}, Case{5, 0, 5}, Case{0, 1, 1}, Case{8, 1, 8}, Case{1, 4, 8},
+                        Case{16, 4, 16}}) {
+    UnwrapOptions options{.page_size = 64, .padding = c.padding, .square = true};
+    options.mip_levels = c.mip_levels;
+    const auto mesh = unwrap_mesh(view, options, {});
+    ASSERT_TRUE(mesh.ok()) << mesh.status().message();
+    const double side = (64.0 - 2 * c.kept) / 64;
+    EXPECT_NEAR(mesh->utilization, side * side, 0.01) << c.padding << ' ' << c.mip_levels;
+  }
+}
+
 // Compares directions of edges in uvs before and after packing.
 TEST(Unwrap, ChartsAreNotTurnedWhereThatIsForbidden) {
   for (const Shape& shape : {torus(16, 8), together(grid(9, 9, 1, 3), grid(9, 2, 5, 1))}) {
@@ -92,6 +133,80 @@ TEST(Unwrap, ChartsAreNotTurnedWhereThatIsForbidden) {
       }
     }
   }
+}
+
+// A kite whose lower sides bulge by less than a float's last places, as slivers do. Most such
+// charts are moved so that no texel is drawn twice.
+TEST(Unwrap, PlacementsSayWhereUvsLie) {
+  UnwrapOptions options{.page_size = 1024, .packing = PackPreset::fast};
+  options.charts.min_fill = 0;
+  for (int seed = 0; seed < 40; ++seed) {
+    const float across = 10.0F + 0.37F * float(seed), bulge = 4e-6F;
+    const std::vector<Vec3f> positions{{-across, 0, 0},
+                                       {0.1F, -9, 0},
+                                       {across, 0.3F, 0},
+                                       {0, 8, 0},
+                                       {-across / 2 + 0.05F, -4.5F - bulge, 0},
+                                       {across / 2 + 0.05F, -4.35F - bulge, 0}};
+    const std::vector<std::uint32_t> indices{0, 1, 2, 0, 2, 3, 0, 4, 1, 1, 5, 2};
+    MeshView view;
+    view.positions = positions;
+    view.indices = indices;
+    const auto mesh = unwrap_mesh(view, options, {});
+    ASSERT_TRUE(mesh.ok()) << mesh.status().message();
+    for (std::size_t i = 0; i < indices.size(); ++i) {
+      const ChartPlacement& p = mesh->placements[mesh->charts.triangle_chart[i / 3]];
+      const Vec2d at = page_texel(p, mesh->charts.uvs[mesh->charts.triangle_uv[i]]);
+      const Extent page = mesh->pages[std::size_t(p.page)];
+      const Vec2f uv = mesh->uvs[mesh->indices[i]];
+      EXPECT_NEAR(uv.x * page.width, at.x, 2e-3) << seed;
+      EXPECT_NEAR(uv.y * page.height, at.y, 2e-3) << seed;
+    }
+  }
+}
+
+// Slivers that lean on each other are opened by moves of two texels of such a page. Where light is
+// baked, gutters tolerate one.
+TEST(Unwrap, OnPagesToBakeUvsStayWithinATexelOfTheirPlacements) {
+  const FlatMesh slivers = leaning_slivers();
+  std::vector<Vec3f> positions;
+  for (const Vec2d& p : slivers.uvs)
+    positions.push_back({float((p.x - 0.4) * 0x1p24), float((p.y - 0.5) * 0x1p24), 0});
+  MeshView view;
+  view.positions = positions;
+  view.indices = slivers.corners;
+  const auto farthest = [&](std::int32_t mip_levels) {
+    UnwrapOptions options{.page_size = 16384, .packing = PackPreset::fast, .square = true};
+    options.mip_levels = mip_levels;
+    options.charts.min_fill = 0;
+    const auto mesh = unwrap_mesh(view, options, {});
+    EXPECT_TRUE(mesh.ok()) << mesh.status().message();
+    if (!mesh.ok()) return 0.0;
+    double most = 0;
+    for (std::size_t i = 0; i < slivers.corners.size(); ++i) {
+      const ChartPlacement& p = mesh->placements[mesh->charts.triangle_chart[i / 3]];
+      const Vec2d at = page_texel(p, mesh->charts.uvs[mesh->charts.triangle_uv[i]]);
+      const Vec2f uv = mesh->uvs[mesh->indices[i]];
+      const Extent page = mesh->pages[std::size_t(p.page)];
+      most =
+          std::max({most, std::abs(uv.x * page.width - at.x), std::abs(uv.y * page.height - at.y)});
+    }
+    return most;
+  };
+  EXPECT_GT(farthest(0), 1.5) << "the test is too easy";
+  for (const std::int32_t mip_levels : {1, 2, 4}) EXPECT_LE(farthest(mip_levels), 1.01);
+}
+
+TEST(Unwrap, CancelledAfterPackingGivesNoMesh) {
+  const LoadedScene ring = lit_scene(torus(16, 8));
+  std::atomic<bool> cancel{false};
+  Context context;
+  context.cancel = &cancel;
+  context.progress = [&](std::string_view stage, double fraction) {
+    if (stage == "pack" && fraction == 1) cancel = true;
+  };
+  const auto mesh = unwrap_mesh(view_of(ring.scene), {.page_size = 64}, context);
+  EXPECT_EQ(mesh.status().code(), ErrorCode::cancelled);
 }
 
 TEST(Unwrap, MoreWorkFillsThePageNoWorse) {

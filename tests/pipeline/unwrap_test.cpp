@@ -205,7 +205,14 @@ TEST(Unwrap, WrongOptionsAreNamed) {
     o.page_size = 1000;
     o.square = true;
   });
+  expect("page_size is 32768", [](UnwrapOptions& o) { o.page_size = 32768; });
+  expect("page_size is 1000", [](UnwrapOptions& o) {
+    o.page_size = 1000;
+    o.pages = 2;
+  });
   expect("padding is -1", [](UnwrapOptions& o) { o.padding = -1; });
+  expect("padding is 513", [](UnwrapOptions& o) { o.padding = 513; });
+  expect("alignment is 1024", [](UnwrapOptions& o) { o.alignment = 1024; });
   expect("mip_levels is -1", [](UnwrapOptions& o) { o.mip_levels = -1; });
   expect("mip_levels is 11", [](UnwrapOptions& o) { o.mip_levels = 11; });
   expect("mip_levels is 5, whose cells of 32 texels", [](UnwrapOptions& o) {
@@ -213,6 +220,14 @@ TEST(Unwrap, WrongOptionsAreNamed) {
     o.mip_levels = 5;
   });
   expect("alignment is 0", [](UnwrapOptions& o) { o.alignment = 0; });
+  expect("alignment is 3 (a power of two", [](UnwrapOptions& o) {
+    o.alignment = 3;
+    o.square = true;
+  });
+  expect("alignment is 6 (a power of two", [](UnwrapOptions& o) {
+    o.alignment = 6;
+    o.pages = 2;
+  });
   expect("texels_per_unit is nan",
          [](UnwrapOptions& o) { o.texels_per_unit = std::numeric_limits<double>::quiet_NaN(); });
   expect("do not fit 1 page of 64 x 64", [](UnwrapOptions& o) {
@@ -283,6 +298,23 @@ TEST(Unwrap, ProgressEndsAtOne) {
       EXPECT_EQ(fraction, 1);
     }
   }
+}
+
+// Also if no parts are too near, so that pages are packed only once.
+TEST(Unwrap, ProgressEndsAtOneWithPartsKeptApart) {
+  const Shape sheet = grid(4, 4);
+  MeshView view;
+  view.positions = sheet.positions;
+  view.indices = sheet.indices;
+  Context context;
+  double fraction = 0;
+  context.progress = [&](std::string_view stage, double f) {
+    if (stage != "pack") return;
+    EXPECT_GE(f, fraction);
+    fraction = f;
+  };
+  ASSERT_TRUE(unwrap_mesh(view, {.page_size = 64, .part_gaps = true}, context).ok());
+  EXPECT_EQ(fraction, 1);
 }
 
 TEST(Unwrap, ACallbacksExceptionComesOut) {
