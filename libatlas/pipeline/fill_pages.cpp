@@ -240,8 +240,9 @@ class PageFiller {
 
 Result<PageLayout> fill_pages(const PlainUvs& uvs, const LayoutOptions& options, ChartSet& charts,
                               const Context& context) {
-  Result<PageLayout> layout = PageFiller(uvs, options, charts, context).run(charts);
-  context.report("pack", 1);
+  const Context stage = part_of_stage(context, "pack");  // an early way may be pressed last
+  Result<PageLayout> layout = PageFiller(uvs, options, charts, stage).run(charts);
+  stage.report("pack", 1);
   return layout;
 }
 
