@@ -327,8 +327,8 @@ TEST(LightPath, NorthMayBeNearlyVertical) {
   }
 }
 
-// The declinations of the mean days of the months in Duffie and Beckman, Solar Engineering of
-// Thermal Processes, table 1.6.1, which are rounded to a tenth of a degree.
+// The declinations of the mean days of the months in Solar Engineering of Thermal Processes (Duffie
+// and Beckman 2006), table 1.6.1, which are rounded to a tenth of a degree.
 TEST(LightPath, DeclinationsAreThoseOfThePublishedTable) {
   const std::pair<int, double> table[] = {{17, -20.9}, {47, -13.0}, {75, -2.4},   {105, 9.4},
                                           {135, 18.8}, {162, 23.1}, {198, 21.2},  {228, 13.5},
