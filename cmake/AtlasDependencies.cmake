@@ -32,6 +32,7 @@ foreach(found mpfr=${LIBATLAS_MPFR_LIBRARY} gmp=${LIBATLAS_GMP_LIBRARY}
   add_library(libatlas::${CMAKE_MATCH_1} UNKNOWN IMPORTED GLOBAL)
   set_target_properties(libatlas::${CMAKE_MATCH_1} PROPERTIES IMPORTED_LOCATION ${CMAKE_MATCH_2})
 endforeach()
+set_target_properties(libatlas::draco PROPERTIES INTERFACE_INCLUDE_DIRECTORIES ${DRACO_INCLUDE_DIR})
 
 if(LIBATLAS_BUILD_TESTS)
   find_package(GTest REQUIRED)            # libgtest-dev

@@ -203,6 +203,18 @@ std::int64_t integer_at(const json& object, const char* key, std::int64_t absent
   return at != object.end() && at->is_number_integer() ? at->get<std::int64_t>() : absent;
 }
 
+std::size_t length_at(const json& object, const char* key) {
+  const auto at = object.find(key);
+  return at == object.end() ? 0 : at->size();
+}
+
+const json* extension_at(const json& element, const char* name) {
+  const auto extensions = element.find("extensions");
+  if (extensions == element.end() || !extensions->is_object()) return nullptr;
+  const auto at = extensions->find(name);
+  return at == extensions->end() ? nullptr : &*at;
+}
+
 Status malformed_gltf(const fs::path& path, const std::string& what) {
   return {ErrorCode::bad_input,
           fmt::format("{}: {} (check it with a glTF validator)", path.string(), what)};

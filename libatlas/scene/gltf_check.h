@@ -20,6 +20,12 @@ Status malformed_gltf(const std::filesystem::path& path, const std::string& what
 // Returns the integer that an object has under a key, or `absent` if it has none.
 std::int64_t integer_at(const nlohmann::json& object, const char* key, std::int64_t absent);
 
+// Returns the length of the list that an object has under a key, or 0 if it has none.
+std::size_t length_at(const nlohmann::json& object, const char* key);
+
+// Returns what an extension says of an element, or null if it says nothing.
+const nlohmann::json* extension_at(const nlohmann::json& element, const char* name);
+
 // The parts of a file. A .gltf file is JSON as a whole.
 struct GltfParts {
   std::string_view json, binary;

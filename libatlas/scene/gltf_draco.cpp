@@ -19,25 +19,16 @@ using nlohmann::json;
 
 constexpr int kUnsignedInt = TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT;
 
-std::size_t length(const json& document, const char* list) {
-  const auto at = document.find(list);
-  return at == document.end() ? 0 : at->size();
-}
-
 // Returns the index that an object has under a key if the list in the document has such an element.
 std::optional<std::size_t> element(const json& document, const char* list, const json& object,
                                    const char* key) {
   const std::int64_t i = integer_at(object, key, -1);
-  if (i < 0 || std::size_t(i) >= length(document, list)) return {};
+  if (i < 0 || std::size_t(i) >= length_at(document, list)) return {};
   return static_cast<std::size_t>(i);
 }
 
 const json* draco_of(const json& primitive) {
-  if (!primitive.is_object()) return nullptr;
-  const auto extensions = primitive.find("extensions");
-  if (extensions == primitive.end() || !extensions->is_object()) return nullptr;
-  const auto draco = extensions->find(kGltfDraco);
-  return draco == extensions->end() ? nullptr : &*draco;
+  return primitive.is_object() ? extension_at(primitive, kGltfDraco) : nullptr;
 }
 
 class Describer {
@@ -70,7 +61,7 @@ class Describer {
     // The data are triangles, also if the file would have them shown as a strip.
     primitive["mode"] = TINYGLTF_MODE_TRIANGLES;
     if (!primitive.contains("indices")) {
-      primitive["indices"] = length(document_, "accessors");
+      primitive["indices"] = length_at(document_, "accessors");
       document_["accessors"].push_back({{"type", "SCALAR"}, {"count", 1}});
     }
     std::string wrong = target(primitive, "indices", {}, part);
@@ -220,9 +211,9 @@ Status malformed(const fs::path& path, const std::string& primitive, const std::
 
 Status describe_draco(const fs::path& path, json& document, std::vector<GltfDracoPart>& parts) {
   Describer describer(document, parts);
-  for (std::size_t m = 0; m < length(document, "meshes"); ++m) {
+  for (std::size_t m = 0; m < length_at(document, "meshes"); ++m) {
     json& mesh = document["meshes"][m];
-    for (std::size_t p = 0; p < length(mesh, "primitives"); ++p) {
+    for (std::size_t p = 0; p < length_at(mesh, "primitives"); ++p) {
       json& primitive = mesh["primitives"][p];
       if (!draco_of(primitive)) continue;
       const std::string name = fmt::format("mesh {} primitive {}", m, p);

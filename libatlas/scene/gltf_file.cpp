@@ -8,6 +8,7 @@
 #include <cstring>
 #include <exception>
 #include <new>
+#include <set>
 
 #include "libatlas/scene/file_bytes.h"
 #include "libatlas/scene/gltf_check.h"
@@ -275,7 +276,7 @@ Result<tinygltf::Model> load_gltf(const fs::path& path, const GltfLoading& loadi
   auto parts = check_gltf(path, *bytes, loading.textures, loading.defects);
   if (!parts.ok()) return parts.status();
   nlohmann::json parsed = std::move(parts->document);
-  const std::vector<int> fallbacks = fill_fallback_buffers(parsed, parts->container);
+  const std::set<int> fallbacks = fill_fallback_buffers(parsed, parts->container);
   std::vector<GltfDracoPart> draco;
   if (Status s = describe_draco(path, parsed, draco); !s.ok()) return s;
   const bool changed = !fallbacks.empty() || !draco.empty();
@@ -286,9 +287,9 @@ Result<tinygltf::Model> load_gltf(const fs::path& path, const GltfLoading& loadi
   }
   if (loading.document != nullptr) *loading.document = std::move(parsed);
   parsed = nullptr;  // frees an unwanted JSON to make room for the second parser
-  std::string rebuilt;
-  if (!parts->plain) rebuilt = parts->container ? plain_glb(*parts) : text;
-  const std::string_view data = parts->plain ? bytes->text() : std::string_view(rebuilt);
+  const std::string rebuilt = parts->container && !parts->plain ? plain_glb(*parts) : std::string();
+  std::string_view data = bytes->text();
+  if (!parts->plain) data = parts->container ? std::string_view(rebuilt) : parts->json;
 
   tinygltf::TinyGLTF loader;
   Folder folder{path.parent_path(), loading.buffers, parts->external_bytes, {}};

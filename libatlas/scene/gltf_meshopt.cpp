@@ -137,21 +137,22 @@ std::string decode(const Packed& packed, std::vector<unsigned char>& out) {
   return {};
 }
 
-// Returns the extension of a buffer or a view in the JSON, or null.
-const json* extension_of(const json& element) {
-  const auto extensions = element.find("extensions");
-  if (extensions == element.end() || !extensions->is_object()) return nullptr;
-  for (const char* name : kGltfMeshopt)
-    if (const auto at = extensions->find(name); at != extensions->end() && at->is_object())
-      return &*at;
-  return nullptr;
+// Returns whether a buffer or a view in the JSON has one of the extensions.
+bool has_extension(const json& element) {
+  return std::any_of(std::begin(kGltfMeshopt), std::end(kGltfMeshopt), [&](const char* name) {
+    const json* extension = extension_at(element, name);
+    return extension && extension->is_object();
+  });
 }
 
-bool has_packed_views(const json& document, std::size_t buffer) {
+// Returns the numbers of the buffers that compressed views name.
+std::set<std::int64_t> buffers_of_packed_views(const json& document) {
+  std::set<std::int64_t> buffers;
   const auto views = document.find("bufferViews");
-  return views != document.end() && std::any_of(views->begin(), views->end(), [&](const json& v) {
-           return integer_at(v, "buffer", -1) == std::int64_t(buffer) && extension_of(v);
-         });
+  if (views == document.end()) return buffers;
+  for (const json& view : *views)
+    if (has_extension(view)) buffers.insert(integer_at(view, "buffer", -1));
+  return buffers;
 }
 
 Status too_new(const fs::path& path, std::size_t view, const char* name) {
@@ -164,27 +165,28 @@ Status too_new(const fs::path& path, std::size_t view, const char* name) {
 
 }  // namespace
 
-std::vector<int> fill_fallback_buffers(json& document, bool container) {
-  std::vector<int> fallbacks;
+std::set<int> fill_fallback_buffers(json& document, bool container) {
+  std::set<int> fallbacks;
+  const std::set<std::int64_t> packed = buffers_of_packed_views(document);
   const auto buffers = document.find("buffers");
   for (std::size_t i = 0; buffers != document.end() && i < buffers->size(); ++i) {
     json& buffer = (*buffers)[i];
-    const bool in_container = container && i == 0 && !extension_of(buffer);
-    if (buffer.contains("uri") || in_container || !has_packed_views(document, i)) continue;
+    const bool in_container = container && i == 0 && !has_extension(buffer);
+    if (buffer.contains("uri") || in_container || !packed.contains(std::int64_t(i))) continue;
     buffer["byteLength"] = 1;
     buffer["uri"] = "data:application/octet-stream;base64,AA==";
-    fallbacks.push_back(static_cast<int>(i));
+    fallbacks.insert(static_cast<int>(i));
   }
   return fallbacks;
 }
 
-Status decode_meshopt_views(const fs::path& path, const std::vector<int>& fallbacks,
+Status decode_meshopt_views(const fs::path& path, const std::set<int>& fallbacks,
                             tinygltf::Model& model) {
   std::vector<tinygltf::Buffer> decoded;
   const std::size_t first = model.buffers.size();
   for (std::size_t i = 0; i < model.bufferViews.size(); ++i) {
     tinygltf::BufferView& view = model.bufferViews[i];
-    if (std::find(fallbacks.begin(), fallbacks.end(), view.buffer) == fallbacks.end()) continue;
+    if (!fallbacks.contains(view.buffer)) continue;
     for (const char* name : kGltfMeshopt) {
       const auto extension = view.extensions.find(name);
       if (extension == view.extensions.end()) continue;

@@ -8,7 +8,7 @@
 // ignored. See the extensions' specifications in the Khronos glTF repository.
 #pragma once
 
-#include <vector>
+#include <set>
 
 #include "libatlas/scene/gltf_file.h"
 
@@ -20,12 +20,12 @@ inline constexpr const char* kGltfMeshopt[] = {"EXT_meshopt_compression",
 // Gives fallback buffers in the JSON of a file one byte of data, since tinygltf refuses buffers
 // without any, and returns their numbers. `container` says whether the file is a .glb, whose first
 // buffer has its data there.
-std::vector<int> fill_fallback_buffers(nlohmann::json& document, bool container);
+std::set<int> fill_fallback_buffers(nlohmann::json& document, bool container);
 
 // Decodes each compressed view of a fallback buffer into a buffer of its own, which is added to the
 // model. Errors: bad_input if a view's compressed data or its description is damaged; unsupported
 // if they are of a codec that the library meshoptimizer is too old for.
-Status decode_meshopt_views(const std::filesystem::path& path, const std::vector<int>& fallbacks,
+Status decode_meshopt_views(const std::filesystem::path& path, const std::set<int>& fallbacks,
                             tinygltf::Model& model);
 
 }  // namespace atlas

@@ -21,21 +21,17 @@ std::uint64_t positions_mark(const Scene& scene) {
 }
 
 Status take_data_out(const fs::path& path, GltfSource& source) {
-  const auto length = [](const nlohmann::json& of, const char* list) {
-    const auto at = of.find(list);
-    return at == of.end() ? std::size_t{0} : at->size();
-  };
   const nlohmann::json& file = source.document;
   const tinygltf::Model& model = source.model;
-  bool same = length(file, "accessors") == model.accessors.size() &&
-              length(file, "bufferViews") == model.bufferViews.size() &&
-              length(file, "images") == model.images.size() &&
-              length(file, "materials") == model.materials.size() &&
-              length(file, "meshes") == model.meshes.size() &&
-              length(file, "nodes") == model.nodes.size() &&
-              length(file, "textures") == model.textures.size();
+  bool same = length_at(file, "accessors") == model.accessors.size() &&
+              length_at(file, "bufferViews") == model.bufferViews.size() &&
+              length_at(file, "images") == model.images.size() &&
+              length_at(file, "materials") == model.materials.size() &&
+              length_at(file, "meshes") == model.meshes.size() &&
+              length_at(file, "nodes") == model.nodes.size() &&
+              length_at(file, "textures") == model.textures.size();
   for (std::size_t i = 0; same && i < model.meshes.size(); ++i)
-    same = length(file["meshes"][i], "primitives") == model.meshes[i].primitives.size();
+    same = length_at(file["meshes"][i], "primitives") == model.meshes[i].primitives.size();
   if (!same) return malformed_gltf(path, "some of its elements are not as the format has them");
   source.document.erase("buffers");
   for (std::size_t i = 0; i < model.images.size(); ++i) source.document["images"][i].erase("uri");

@@ -52,7 +52,17 @@ TEST(Unwrap, PagesAreBakedWithMipLevels) {
   }
 }
 
-// Checks the sides of the page, and of the boxes that charts keep to.
+// Expects sides of the page and corners of the charts' boxes, but for their padding, at multiples
+// of `cell` texels.
+void expect_cells(const UnwrappedMesh& mesh, std::int32_t cell, std::int32_t padding) {
+  EXPECT_EQ(mesh.pages[0].width % cell, 0);
+  EXPECT_EQ(mesh.pages[0].height % cell, 0);
+  for (const ChartPlacement& p : mesh.placements) {
+    EXPECT_EQ((p.x - padding) % cell, 0);
+    EXPECT_EQ((p.y - padding) % cell, 0);
+  }
+}
+
 TEST(Unwrap, AlignmentIsKept) {
   const LoadedScene scene = lit_room(6);
   UnwrapOptions options{.page_size = 512};
@@ -60,12 +70,7 @@ TEST(Unwrap, AlignmentIsKept) {
   const auto mesh = unwrap_mesh(view_of(scene.scene), options, {});
   ASSERT_TRUE(mesh.ok()) << mesh.status().message();
   expect_sound(view_of(scene.scene), *mesh);
-  EXPECT_EQ(mesh->pages[0].width % 8, 0);
-  EXPECT_EQ(mesh->pages[0].height % 8, 0);
-  for (const ChartPlacement& p : mesh->placements) {
-    EXPECT_EQ((p.x - options.padding) % 8, 0);
-    EXPECT_EQ((p.y - options.padding) % 8, 0);
-  }
+  expect_cells(*mesh, 8, options.padding);
 }
 
 // With mip levels, cells are as large as both multiples allow.
@@ -76,12 +81,7 @@ TEST(Unwrap, AlignmentAndMipLevelsAreKeptTogether) {
   options.mip_levels = 2;
   const auto mesh = unwrap_mesh(view_of(scene.scene), options, {});
   ASSERT_TRUE(mesh.ok()) << mesh.status().message();
-  EXPECT_EQ(mesh->pages[0].width % 12, 0);
-  EXPECT_EQ(mesh->pages[0].height % 12, 0);
-  for (const ChartPlacement& p : mesh->placements) {
-    EXPECT_EQ((p.x - options.padding) % 12, 0);
-    EXPECT_EQ((p.y - options.padding) % 12, 0);
-  }
+  expect_cells(*mesh, 12, options.padding);
 }
 
 // A square sheet takes a square page up to its padding.
