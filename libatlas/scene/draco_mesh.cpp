@@ -19,6 +19,9 @@ namespace {
 // them, unless they announce few.
 constexpr std::size_t kMostExpansion = 64, kFew = std::size_t{1} << 20;
 
+// What a triangle and its share of the points take decoded, with more attributes than is usual.
+constexpr std::size_t kTriangleBytes = 64;
+
 draco::DecoderBuffer buffer_of(std::span<const unsigned char> bytes) {
   draco::DecoderBuffer buffer;
   buffer.Init(reinterpret_cast<const char*>(bytes.data()), bytes.size());
@@ -101,12 +104,23 @@ std::string read_attribute(const draco::Mesh& mesh, DracoRows& rows) {
   return {};
 }
 
+// Returns the bytes of a decoded mesh and of the rows that it will fill.
+std::size_t decoded_bytes(const draco::Mesh& mesh, std::span<const DracoRows> asked) {
+  std::size_t row = 0;
+  for (int a = 0; a < mesh.num_attributes(); ++a)
+    row += static_cast<std::size_t>(mesh.attribute(a)->byte_stride());
+  for (const DracoRows& rows : asked) row += rows.stride;
+  return row * mesh.num_points() + sizeof(draco::Mesh::Face) * std::size_t{mesh.num_faces()};
+}
+
 std::string decode(std::span<const unsigned char> bytes, std::span<DracoRows> asked,
-                   DracoMesh& mesh) {
+                   DracoMesh& mesh, DracoBudget& budget) {
   draco::DecoderBuffer buffer = buffer_of(bytes);
   auto decoded = draco::Decoder().DecodeMeshFromBuffer(&buffer);
   if (!decoded.ok()) return "cannot be decompressed";
   const draco::Mesh& found = *decoded.value();
+  if (!budget.take(decoded_bytes(found, asked)))
+    return "decodes to more than a file of this size can hold (name the same data less often)";
   mesh.points = found.num_points();
   mesh.indices.reserve(3 * std::size_t{found.num_faces()});
   for (std::uint32_t f = 0; f < found.num_faces(); ++f)
@@ -119,11 +133,20 @@ std::string decode(std::span<const unsigned char> bytes, std::span<DracoRows> as
 
 }  // namespace
 
+DracoBudget::DracoBudget(std::size_t file_bytes)
+    : left_(kTriangleBytes * std::max(file_bytes * kMostExpansion, kFew)) {}
+
+bool DracoBudget::take(std::size_t bytes) {
+  if (bytes > left_) return false;
+  left_ -= bytes;
+  return true;
+}
+
 std::string decode_draco(std::span<const unsigned char> bytes, std::span<DracoRows> asked,
-                         DracoMesh& mesh) {
+                         DracoMesh& mesh, DracoBudget& budget) {
   if (std::string wrong = check_counts(bytes); !wrong.empty()) return wrong;
   try {
-    return decode(bytes, asked, mesh);
+    return decode(bytes, asked, mesh, budget);
   } catch (const std::bad_alloc&) {
     throw;
   } catch (const std::exception&) {  // such as the containers' own, for sizes that are damaged

@@ -23,9 +23,23 @@ struct DracoMesh {
   std::vector<std::uint32_t> indices = {};  // three per triangle
 };
 
+// How many bytes a file may decode to in all. Without a limit of the sum, a small file that names
+// the same data again and again would fill any memory.
+class DracoBudget {
+ public:
+  // For a file whose buffers hold so many bytes.
+  explicit DracoBudget(std::size_t file_bytes);
+
+  // Returns false, and takes nothing, if less is left.
+  bool take(std::size_t bytes);
+
+ private:
+  std::size_t left_;
+};
+
 // Decodes a mesh of Draco's bitstream 2.2, the one that glTF allows, and the attributes that are
 // asked for. Returns what is wrong with the data, or an empty text.
 std::string decode_draco(std::span<const unsigned char> bytes, std::span<DracoRows> asked,
-                         DracoMesh& mesh);
+                         DracoMesh& mesh, DracoBudget& budget);
 
 }  // namespace atlas

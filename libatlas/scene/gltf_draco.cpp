@@ -68,7 +68,8 @@ class Describer {
     if (!wrong.empty()) return wrong;
     primitive["extensions"].erase(kGltfDraco);
     if (primitive["extensions"].empty()) primitive.erase("extensions");
-    parts_.push_back(std::move(part));
+    const bool filled_by_others = part.attributes.empty() && part.indices.empty();
+    if (!filled_by_others) parts_.push_back(std::move(part));
     return {};
   }
 
@@ -179,7 +180,8 @@ bool complete(const tinygltf::Model& model, const GltfDracoPart& part) {
   return all;
 }
 
-std::string decode_part(const GltfDracoPart& part, tinygltf::Model& model, Filler& filler) {
+std::string decode_part(const GltfDracoPart& part, tinygltf::Model& model, Filler& filler,
+                        DracoBudget& budget) {
   if (!complete(model, part)) return "names elements that are not as the format has them";
   const auto bytes = gltf_view(model, static_cast<int>(part.view));
   if (!bytes.ok()) return bytes.status().message();
@@ -191,7 +193,7 @@ std::string decode_part(const GltfDracoPart& part, tinygltf::Model& model, Fille
                          target.accessor);
   }
   DracoMesh mesh;
-  if (std::string wrong = decode_draco(*bytes, asked, mesh); !wrong.empty()) return wrong;
+  if (std::string wrong = decode_draco(*bytes, asked, mesh, budget); !wrong.empty()) return wrong;
   for (std::size_t i = 0; i < asked.size(); ++i) {
     filler.set_stride(part.attributes[i], asked[i].stride);
     filler.fill(part.attributes[i], mesh.points, std::move(asked[i].data));
@@ -228,8 +230,9 @@ Status describe_draco(const fs::path& path, json& document, std::vector<GltfDrac
 Status decode_draco_parts(const fs::path& path, const std::vector<GltfDracoPart>& parts,
                           tinygltf::Model& model, json* document) {
   Filler filler(model, document);
+  DracoBudget budget(gltf_buffer_bytes(model));
   for (const GltfDracoPart& part : parts)
-    if (std::string wrong = decode_part(part, model, filler); !wrong.empty())
+    if (std::string wrong = decode_part(part, model, filler, budget); !wrong.empty())
       return malformed(path, part.primitive, wrong);
   return {};
 }

@@ -317,6 +317,12 @@ Result<tinygltf::Model> load_gltf(const fs::path& path, const GltfLoading& loadi
   return model;
 }
 
+std::size_t gltf_buffer_bytes(const tinygltf::Model& model) {
+  std::size_t bytes = 0;
+  for (const tinygltf::Buffer& buffer : model.buffers) bytes += buffer.data.size();
+  return bytes;
+}
+
 Result<std::span<const std::uint8_t>> gltf_view(const tinygltf::Model& model, int view) {
   if (view < 0 || std::size_t(view) >= model.bufferViews.size()) {
     return Status(ErrorCode::bad_input,

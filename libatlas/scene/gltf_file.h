@@ -43,6 +43,9 @@ struct GltfLoading {
 // version, or requires an extension that is not read, which the message names).
 Result<tinygltf::Model> load_gltf(const std::filesystem::path& path, const GltfLoading& loading);
 
+// Returns how many bytes all buffers hold.
+std::size_t gltf_buffer_bytes(const tinygltf::Model& model);
+
 // Returns the bytes of a buffer view. Error: bad_input if it reaches beyond its buffer.
 Result<std::span<const std::uint8_t>> gltf_view(const tinygltf::Model& model, int view);
 

@@ -137,6 +137,17 @@ std::string decode(const Packed& packed, std::vector<unsigned char>& out) {
   return {};
 }
 
+// Decodes if no more than `left` bytes come of it, which are taken from these. Views that name the
+// same bytes again and again would fill any memory without a limit of the sum.
+std::string decode_within(std::size_t& left, const Packed& packed,
+                          std::vector<unsigned char>& out) {
+  const std::size_t wanted = packed.count * packed.stride;
+  if (wanted > left)
+    return "decodes to more than a file of this size can hold (name the same data less often)";
+  left -= wanted;
+  return decode(packed, out);
+}
+
 // Returns whether a buffer or a view in the JSON has one of the extensions.
 bool has_extension(const json& element) {
   return std::any_of(std::begin(kGltfMeshopt), std::end(kGltfMeshopt), [&](const char* name) {
@@ -184,6 +195,7 @@ Status decode_meshopt_views(const fs::path& path, const std::set<int>& fallbacks
                             tinygltf::Model& model) {
   std::vector<tinygltf::Buffer> decoded;
   const std::size_t first = model.buffers.size();
+  std::size_t left = kMostExpansion * gltf_buffer_bytes(model);
   for (std::size_t i = 0; i < model.bufferViews.size(); ++i) {
     tinygltf::BufferView& view = model.bufferViews[i];
     if (!fallbacks.contains(view.buffer)) continue;
@@ -194,7 +206,7 @@ Status decode_meshopt_views(const fs::path& path, const std::set<int>& fallbacks
       tinygltf::Buffer buffer;
       std::string wrong = read_description(model, extension->second, packed);
       const bool described = wrong.empty();
-      if (described) wrong = decode(packed, buffer.data);
+      if (described) wrong = decode_within(left, packed, buffer.data);
       if (!wrong.empty() && described && newer_codec(packed)) return too_new(path, i, name);
       if (!wrong.empty())
         return malformed_gltf(path, fmt::format("buffer view {} ({}) {}", i, name, wrong));

@@ -174,6 +174,47 @@ TEST(GltfDraco, PrimitivesMayShareAccessors) {
   EXPECT_EQ(loaded->scene.positions.size(), grid.positions.size() / 3);
 }
 
+// The same data may be decoded several times, but not without a limit.
+TEST(GltfDraco, TheSumOfDecodedDataIsLimited) {
+  const TempFolder folder;
+  constexpr std::uint32_t kSide = 100;
+  std::vector<float> positions;
+  DracoSource source;
+  source.sequential = false;
+  source.bits = 8;
+  source.points = kSide * kSide;
+  for (std::uint32_t p = 0; p < source.points; ++p) {
+    const std::uint32_t x = p % kSide, y = p / kSide;
+    positions.insert(positions.end(), {float(x), float(y), 0});
+    if (x + 1 < kSide && y + 1 < kSide)
+      for (const std::uint32_t corner : {0u, 1u, kSide, kSide, 1u, kSide + 1})
+        source.indices.push_back(p + corner);
+  }
+  source.attributes = {{kPosition, 3, draco::DT_FLOAT32, positions.data()}};
+  for (const int times : {100, 200}) {
+    DracoGltf g = grid_gltf(source);
+    json& primitives = g.j["meshes"][0]["primitives"];
+    for (int i = 1; i < times; ++i) {
+      json copy = primitives[0];
+      copy["indices"] = g.promised(source.indices.size(), "SCALAR", 5125);
+      copy["attributes"]["POSITION"] = g.promised(source.points, "VEC3");
+      primitives.push_back(copy);
+    }
+    // Triangles take 12 bytes each, and a point its position, 12 bytes, twice.
+    const std::size_t decoded = (4 * source.indices.size() + 24 * source.points) * times;
+    constexpr std::size_t kLeast = std::size_t{64} << 20;
+    ASSERT_LT(64 * 64 * g.bytes.size(), kLeast);
+    const auto loaded = load_glb(folder, g);
+    EXPECT_EQ(loaded.ok(), decoded <= kLeast);
+    if (loaded.ok()) {
+      EXPECT_EQ(loaded->scene.triangle_count(), source.indices.size() / 3 * times);
+    } else {
+      EXPECT_EQ(loaded.status().code(), ErrorCode::bad_input);
+      EXPECT_NE(loaded.status().message().find("decodes to more than"), std::string::npos);
+    }
+  }
+}
+
 // The compressed copy, which is damaged here, is not needed.
 TEST(GltfDraco, PlainDataAreReadInstead) {
   const TempFolder folder;

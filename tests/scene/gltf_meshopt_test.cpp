@@ -230,6 +230,24 @@ TEST(GltfMeshopt, PlainDataAreReadAsTheyAre) {
   EXPECT_EQ(loaded->scene.positions[1], (Vec3f{1, 0, 0}));
 }
 
+// Views may name the same compressed data, but not without a limit of the sum.
+TEST(GltfMeshopt, TheSumOfDecodedDataIsLimited) {
+  const TempFolder folder;
+  const PackedGltf whole = packed_grid();
+  const json packed = whole.j["bufferViews"][0]["extensions"][kMeshopt];
+  const std::size_t decoded = std::size_t(packed["count"]) * std::size_t(packed["byteStride"]);
+  const std::size_t most = 64 * whole.bytes.size() / decoded;
+  for (const std::size_t times : {most / 2, 2 * most}) {
+    PackedGltf g = whole;
+    for (std::size_t i = 0; i < times; ++i) g.j["bufferViews"].push_back(g.j["bufferViews"][0]);
+    const auto loaded = load_glb(folder, g);
+    EXPECT_EQ(loaded.ok(), times < most);
+    if (loaded.ok()) continue;
+    EXPECT_EQ(loaded.status().code(), ErrorCode::bad_input);
+    EXPECT_NE(loaded.status().message().find("decodes to more than"), std::string::npos);
+  }
+}
+
 TEST(GltfMeshopt, DamageIsNamedWithItsView) {
   const TempFolder folder;
   const struct {
