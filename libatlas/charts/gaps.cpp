@@ -52,17 +52,6 @@ Flat flat_chart(const MeshView& mesh, const ChartSet& set, const Chart& chart) {
   return flat;
 }
 
-std::vector<std::array<std::uint32_t, 2>> border_of(const Flat& flat) {
-  param::HalfEdges half_edges;
-  half_edges.build(flat.corners, flat.uvs.size());
-  std::vector<std::array<std::uint32_t, 2>> border;
-  for (std::uint32_t h = 0; h < 3 * flat.corners.size(); ++h) {
-    if (half_edges.opposite(h) == param::HalfEdges::none)
-      border.push_back({half_edges.from(h), half_edges.to(h)});
-  }
-  return border;
-}
-
 Widened widen(const MeshView& mesh, const WidenOptions& options, ChartSet& set, Chart& chart) {
   Flat flat = flat_chart(mesh, set, chart);
   if (flat.corners.empty()) return {};
@@ -72,7 +61,8 @@ Widened widen(const MeshView& mesh, const WidenOptions& options, ChartSet& set, 
   for (Vec2d& p : flat.uvs) p = {scale * p.x, scale * p.y};
   chart.distortion = widened.distortion;
   chart.distortion.uv_area *= scale * scale;
-  chart.size = orient_for_packing(flat.uvs, border_of(flat)).size;
+  const auto border = param::border_edges(flat.corners, flat.uvs.size());
+  chart.size = orient_for_packing(flat.uvs, border).size;
   std::copy(flat.uvs.begin(), flat.uvs.end(), set.uvs.begin() + chart.first_uv);
   return widened;
 }

@@ -47,11 +47,16 @@ bool names_uv_twice(const std::array<std::uint32_t, 3>& c) {
   return c[0] == c[1] || c[1] == c[2] || c[2] == c[0];
 }
 
+struct TileLimit {
+  double side, max_stretch;  // see TileLimits
+};
+
 // Cuts one chart into pieces.
 class Tiler {
  public:
-  Tiler(const MeshView& mesh, double limit, double max_stretch)
-      : mesh_(mesh), limit_(limit), max_stretch_(max_stretch) {}
+  // Given charts are not turned.
+  Tiler(const MeshView& mesh, const TileLimit& limit, bool given)
+      : mesh_(mesh), limit_(limit.side), max_stretch_(limit.max_stretch), given_(given) {}
 
   // Returns the pieces, in the order of the cuts, each measured.
   std::vector<FlatChart> run(FlatChart chart) {
@@ -74,7 +79,11 @@ class Tiler {
       pieces_.push_back(std::move(piece));
       return;
     }
-    for (const std::vector<std::uint32_t>& part : parts) cut(take_triangles(piece, part));
+    for (const std::vector<std::uint32_t>& part : parts) {
+      FlatChart smaller = take_triangles(piece, part);
+      if (!given_) turn_for_packing(smaller);
+      cut(std::move(smaller));
+    }
   }
 
   std::vector<std::vector<std::uint32_t>> divide(const FlatChart& piece, const Box& box) const {
@@ -113,6 +122,7 @@ class Tiler {
 
   const MeshView& mesh_;
   double limit_, max_stretch_;
+  bool given_;
   std::vector<FlatChart> pieces_;
 };
 
@@ -152,7 +162,7 @@ class Rebuilder {
     // Given charts keep their shapes, and charts beyond the bound need not keep to it.
     const bool bounded = !old.kept && old.distortion.stretch_999 <= max_stretch;
     if (!bounded) max_stretch = std::numeric_limits<double>::infinity();
-    return Tiler(mesh_, limit, max_stretch).run(std::move(whole));
+    return Tiler(mesh_, {limit, max_stretch}, old.kept).run(std::move(whole));
   }
 
   void divide(const Chart& old, std::vector<FlatChart> pieces) {

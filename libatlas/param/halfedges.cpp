@@ -61,4 +61,15 @@ void HalfEdges::border(Border& out) const {
   }
 }
 
+std::vector<std::array<std::uint32_t, 2>> border_edges(
+    std::span<const std::array<std::uint32_t, 3>> triangles, std::size_t vertices) {
+  HalfEdges half_edges;
+  half_edges.build(triangles, vertices);
+  std::vector<std::array<std::uint32_t, 2>> edges;
+  for (std::uint32_t h = 0; h < 3 * triangles.size(); ++h)
+    if (half_edges.opposite(h) == HalfEdges::none)
+      edges.push_back({half_edges.from(h), half_edges.to(h)});
+  return edges;
+}
+
 }  // namespace atlas::param

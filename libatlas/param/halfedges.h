@@ -49,6 +49,10 @@ class HalfEdges {
   std::vector<std::uint32_t> found_, first_, out_;
 };
 
+// Returns the edges without an opposite as pairs of vertices, in the order of the half-edges.
+std::vector<std::array<std::uint32_t, 2>> border_edges(
+    std::span<const std::array<std::uint32_t, 3>> triangles, std::size_t vertices);
+
 // The half-edges of a mesh, and those of them that are its border.
 struct BorderView {
   const HalfEdges& all;

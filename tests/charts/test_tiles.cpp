@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <glm/glm.hpp>
+#include <limits>
 
 #include "libatlas/charts/tiles.h"
 #include "tests/charts/chart_checks.h"
@@ -115,6 +117,41 @@ TEST(Tiles, AreCutAcross) {
   EXPECT_EQ(set.charts.size(), 4u);
   EXPECT_NEAR(set.seam_length, 3, 1e-3);
   EXPECT_EQ(check_charts(mesh.view(), set).fault, "");
+}
+
+// Returns the area of the smallest box around a chart, of 900 directions.
+double smallest_box(const ChartSet& set, const Chart& chart) {
+  double smallest = std::numeric_limits<double>::infinity();
+  for (int k = 0; k < 900; ++k) {
+    const double c = std::cos(k * M_PI / 1800), s = std::sin(k * M_PI / 1800);
+    glm::dvec2 low(1e30), high(-1e30);
+    for (std::uint32_t i = chart.first_uv; i < chart.first_uv + chart.uv_count; ++i) {
+      const glm::dvec2 p(c * set.uvs[i].x + s * set.uvs[i].y, c * set.uvs[i].y - s * set.uvs[i].x);
+      low = glm::min(low, p);
+      high = glm::max(high, p);
+    }
+    smallest = std::min(smallest, (high.x - low.x) * (high.y - low.y));
+  }
+  return smallest;
+}
+
+// An arc's pieces have directions of their own, and would lie across their boxes.
+TEST(Tiles, EachPieceIsTurnedForPacking) {
+  Mesh mesh(grid(240, 3, 1, 1));
+  for (Vec3f& p : mesh.positions) {
+    const double angle = 5 * double(p.x), radius = 1 + 0.05 * double(p.y);
+    p = {float(radius * std::cos(angle)), float(radius * std::sin(angle)), 0};
+  }
+  ChartOptions options;
+  options.min_fill = 0;
+  auto charts = make_charts(mesh.view(), options, {});
+  ASSERT_TRUE(charts.ok());
+  ASSERT_EQ(charts->charts.size(), 1u);
+  EXPECT_EQ(cut(mesh, 0.6, *charts), 1u);
+  EXPECT_GE(charts->charts.size(), 8u);
+  for (const Chart& chart : charts->charts)
+    EXPECT_LE(chart.size.x * chart.size.y, 1.021 * smallest_box(*charts, chart));
+  EXPECT_EQ(check_charts(mesh.view(), *charts).fault, "");
 }
 
 TEST(Tiles, WhatIsWithinItsLimitStays) {

@@ -53,6 +53,11 @@ void keep_to_bound(const LocalMesh& mesh, double max_stretch, FlatChart& piece) 
   if (piece.distortion.stretch_999 > max_stretch) relax(mesh, max_stretch, piece);
 }
 
+void turn_for_packing(FlatChart& piece) {
+  const auto border = param::border_edges(piece.corners, piece.uvs.size());
+  piece.size = orient_for_packing(piece.uvs, border).size;
+}
+
 FlatChart part_of_chart(const FlattenInput& input, const FlatChart& whole,
                         std::span<const std::uint32_t> triangles) {
   FlatChart piece = take_triangles(whole, triangles);
@@ -64,15 +69,7 @@ FlatChart part_of_chart(const FlattenInput& input, const FlatChart& whole,
   }
   keep_to_bound({PositionView(positions, positions[0]), piece.corners, density},
                 input.options.max_stretch, piece);
-  std::vector<std::array<std::uint32_t, 2>> border;
-  param::HalfEdges half_edges;
-  half_edges.build(piece.corners, piece.uvs.size());
-  for (std::uint32_t h = 0; h < 3 * piece.corners.size(); ++h) {
-    if (half_edges.opposite(h) == param::HalfEdges::none) {
-      border.push_back({half_edges.from(h), half_edges.to(h)});
-    }
-  }
-  piece.size = orient_for_packing(piece.uvs, border).size;
+  turn_for_packing(piece);
   piece.cone = part_of_cone(input.topology.normals, piece.triangles, whole.cone);
   return piece;
 }

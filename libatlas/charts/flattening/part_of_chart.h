@@ -16,6 +16,9 @@ FlatChart take_triangles(const FlatChart& whole, std::span<const std::uint32_t> 
 // max_stretch, relaxes the coordinates, if that brings them within it.
 void keep_to_bound(const LocalMesh& mesh, double max_stretch, FlatChart& piece);
 
+// Turns a piece as orient_for_packing() does, and measures its size.
+void turn_for_packing(FlatChart& piece);
+
 // Returns those triangles as a chart; `triangles` are indices into whole.triangles, ascending, at
 // least one. They keep their coordinates except for the turn for packing, or are relaxed if they
 // exceed max_stretch by themselves and that helps. Size, cone and distortion are measured again.
