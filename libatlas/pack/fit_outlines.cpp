@@ -7,6 +7,7 @@
 #include "libatlas/pack/fit_result.h"
 #include "libatlas/pack/outline_fit.h"
 #include "libatlas/pack/shape_check.h"
+#include "libatlas/pack/specks.h"
 #include "libatlas/pack/straight_page.h"
 
 namespace atlas::pack {
@@ -179,13 +180,23 @@ void write_result(const OutlineFit& fit, const FitOptions& options, OutlineLayou
 
 constexpr std::size_t kFewInRows = 64;  // charts
 
+// Returns whether a page that the search over cells has filled to this share is pressed in a second
+// try. With specks, which the search lays into the gaps as well, pressing gains little unless the
+// page is poorly filled, and seldom more than kMostPressed.
+bool worth_pressing_late(double fill, const FitOptions& options) {
+  constexpr double kPoorFill = 0.7, kMostPressed = 1.08;
+  return fill < kPoorFill && kMostPressed * fill >= options.wanted_fill;
+}
+
 }  // namespace
 
 Result<FitResult> fit_outlines(const FitCharts& charts, const FitOptions& options,
                                const Context& context) {
   const auto [items, outlines] = charts;
   FitResult result;
-  std::optional<FitResult> pressed = fit_pressed(charts, options, context);
+  const bool specks = has_specks(outlines, options);
+  std::optional<FitResult> pressed;
+  if (!specks) pressed = fit_pressed(charts, options, context);
   // Straight charts are laid in rows on a page of any shape, or pressed by `best` on a page of
   // given shape. The search over cells may fill more. With many charts, rows are about as good, and
   // far cheaper.
@@ -218,7 +229,11 @@ Result<FitResult> fit_outlines(const FitCharts& charts, const FitOptions& option
     fill_free_page(*fit, result, best);
   if (best.scale == options.max_scale) use_fewer_pages(*fit, options, result, best);
   write_result(*fit, options, best, result);
-  if (pressed && options.free_aspect && pressed->utilization >= result.utilization) {
+  if (specks && worth_pressing_late(result.utilization, options))
+    pressed = fit_pressed(charts, options, context);
+  if (context.cancelled()) return Status::cancelled();
+  if (pressed && (options.free_aspect ? pressed->utilization >= result.utilization
+                                      : pressed->scale > result.scale)) {
     pressed->layouts += result.layouts;
     return std::move(*pressed);
   }

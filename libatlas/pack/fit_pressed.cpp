@@ -6,6 +6,7 @@
 #include "libatlas/pack/fit_result.h"
 #include "libatlas/pack/outline_mask.h"
 #include "libatlas/pack/press.h"
+#include "libatlas/pack/specks.h"
 #include "libatlas/pack/straight_page.h"
 
 namespace atlas::pack {
@@ -18,6 +19,7 @@ std::optional<FitResult> fit_pressed(const FitCharts& charts, const FitOptions& 
   // On a page of given shape, the search over cells fills more with straight charts than pressing
   // does.
   if (straight && !options.free_aspect && options.preset != PackPreset::best) return std::nullopt;
+  if (straight && has_specks(outlines, options)) return std::nullopt;
   if (!straight && are_slivers(outlines, options)) return std::nullopt;
   PressedPage pressed = straight && options.free_aspect
                             ? pack_straight(outlines, options, context)

@@ -7,6 +7,7 @@
 #include "libatlas/core/parallel.h"
 #include "libatlas/pack/press_starts.h"
 #include "libatlas/pack/settle.h"
+#include "libatlas/pack/specks.h"
 
 namespace atlas::pack {
 namespace {
@@ -22,7 +23,6 @@ constexpr double kMostRedrawn = 1.045, kMostRedrawnTwice = 1.025;
 // Only few starts are worth pressing, because the layout on cells nearly determines how well its
 // page can be pressed. More layouts gain more than pressing more starts in the same time.
 constexpr std::size_t kRoughStarts = 4, kThoroughStarts = 2;
-constexpr std::size_t kMostCharts = 128;
 
 struct Effort {
   double first_step, last_step;
@@ -37,7 +37,9 @@ class Press {
       : outlines_(outlines),
         options_(options),
         context_(context),
-        starts_(outlines, options, context) {
+        pressed_(charts_to_press(outlines, options)),
+        own_outlines_(without_specks()),
+        starts_(pressed_.size() < outlines.size() ? own_outlines_ : outlines, options, context) {
     for (const ChartOutline& o : outlines) area_ += o.area;
   }
 
@@ -73,7 +75,15 @@ class Press {
   }
 
  private:
-  bool alone() const { return outlines_.size() <= 1; }
+  bool alone() const { return pressed_.size() <= 1; }
+
+  // Returns copies of the outlines of the charts that are pressed; nothing if all are.
+  std::vector<ChartOutline> without_specks() const {
+    std::vector<ChartOutline> outlines;
+    if (pressed_.size() == outlines_.size()) return outlines;
+    for (const std::uint32_t i : pressed_) outlines.push_back(outlines_[i]);
+    return outlines;
+  }
 
   // Pushes the charts of the starts with the smallest pages together.
   void press_best(std::vector<PressStart>& starts, std::size_t most, const Effort& effort) const {
@@ -105,8 +115,8 @@ class Press {
                      PressStart& start) const {
     std::vector<Body> bodies;
     std::vector<std::size_t> owner;
-    for (std::size_t i = 0; i < outlines_.size(); ++i) {
-      if (outlines_[i].empty()) continue;
+    for (std::size_t i = 0; i < pressed_.size(); ++i) {
+      if (outlines_[pressed_[i]].empty()) continue;
       bodies.push_back(starts_.charts()[i].bodies[level]);
       bodies.back().at = start.poses[i].first;
       bodies.back().angle = start.poses[i].second;
@@ -143,7 +153,7 @@ class Press {
     sort_starts(starts);
     const double fullest = goodness(starts.front().page, options_);
     bool settled = false;
-    std::size_t wanted = outlines_.size() <= kFew ? kThoroughStarts : 1;
+    std::size_t wanted = pressed_.size() <= kFew ? kThoroughStarts : 1;
     for (std::size_t k = 0; k < std::min(starts.size(), kMost) && wanted > 0; ++k) {
       if (context_.cancelled()) return;
       if (settled && goodness(starts[k].page, options_) < kClose * fullest) return;
@@ -188,12 +198,15 @@ class Press {
 
   PressedPage settle_exactly(const PressStart& s) const {
     const double grow = options_.page_size / std::max(s.page.width, s.page.height);
-    std::vector<SettleTarget> targets(s.poses.size());
-    for (std::size_t i = 0; i < targets.size(); ++i) {
+    std::vector<SettleTarget> targets(outlines_.size());
+    for (SettleTarget& t : targets) t.anywhere = true;
+    for (std::size_t i = 0; i < pressed_.size(); ++i) {
       const Vec2d center = starts_.charts()[i].center_of_shape();
-      targets[i].origin = {s.poses[i].first.x * grow, s.poses[i].first.y * grow};
-      targets[i].angle = s.poses[i].second;
-      targets[i].from = {-center.x / starts_.scale(), -center.y / starts_.scale()};
+      SettleTarget& target = targets[pressed_[i]];
+      target.anywhere = false;
+      target.origin = {s.poses[i].first.x * grow, s.poses[i].first.y * grow};
+      target.angle = s.poses[i].second;
+      target.from = {-center.x / starts_.scale(), -center.y / starts_.scale()};
     }
     PressedPage page = settle({outlines_, targets, starts_.scale() * grow}, options_, context_);
     page.targets = std::move(targets);
@@ -204,6 +217,8 @@ class Press {
   std::span<const ChartOutline> outlines_;
   const FitOptions& options_;
   const Context& context_;
+  std::vector<std::uint32_t> pressed_;  // the others are specks
+  std::vector<ChartOutline> own_outlines_;
   double area_ = 0;
   PressStarts starts_;
 };
@@ -236,8 +251,9 @@ bool worth_pressing(std::span<const ChartOutline> outlines, const FitOptions& op
   double area = 0;
   for (const ChartOutline& o : outlines) area += o.area;
   return options.pages == 1 && options.preset != PackPreset::fast && options.any_angle &&
-         options.allow_rotation && options.page_size >= 256 && outlines.size() <= kMostCharts &&
-         area > 0 && options.max_scale * options.max_scale * area > kSurelyFits * page;
+         options.allow_rotation && options.page_size >= 256 && area > 0 &&
+         options.max_scale * options.max_scale * area > kSurelyFits * page &&
+         !charts_to_press(outlines, options).empty();
 }
 
 PressedPage press_outlines(std::span<const ChartOutline> outlines, const FitOptions& options,

@@ -21,6 +21,7 @@ struct PressedPlace {
 struct SettleTarget {
   Vec2d origin, from;
   double angle = 0;
+  bool anywhere = false;  // a speck, which has no target and goes into any gap
 };
 
 struct PressedPage {
@@ -49,8 +50,8 @@ PressedPage begun_page(const FitOptions& options);
 double book_round(const FitOptions& options, double seconds, double use, PressedPage& best);
 
 // Returns whether press_outlines is suitable: there is one page of at least 256 texels a side, the
-// preset is not `fast`, the charts are few and may be turned by any angle, and they are likely to
-// be larger than half the page at the largest scale.
+// preset is not `fast`, the charts are few, specks aside (specks.h), and may be turned by any
+// angle, and they are likely to be larger than half the page at the largest scale.
 bool worth_pressing(std::span<const ChartOutline> outlines, const FitOptions& options);
 
 // Makes layouts on coarse cells for several widths of the page, pushes the best of them together as

@@ -23,9 +23,27 @@ class Settler {
     std::iota(order_.begin(), order_.end(), 0u);
   }
 
-  // Places the charts after shrinking them to this share of their size. Their targets move together
-  // by less, so most of the free space that results is at the page's upper and right edges. There,
-  // charts can move out of the way of those placed before them.
+  // Places all charts after shrinking them to this share of their size.
+  bool place(double share, PressedPage& result) {
+    if (!place_at(share, result)) return false;
+    close_up(result);
+    if (specks_.empty()) return true;
+    const std::int32_t side = options_.page_size / options_.alignment;
+    if (!place_in_gaps(specks_, side, result)) return false;
+    measure(result);
+    return true;
+  }
+
+  // Returns whether the last layout has charts that are far from their targets.
+  bool displaced() const { return !displaced_.empty(); }
+
+ private:
+  static constexpr double kCloser = 0.8;
+  static constexpr std::int64_t kSmallShare = 60;
+
+  // Places the charts that have targets. The targets move together by less than charts shrink, so
+  // most of the free space that results is at the page's upper and right edges. There, charts can
+  // move out of the way of those placed before them.
   bool place_at(double share, PressedPage& result) {
     const double scale = share * scale_;
     draw(scale, std::pow(share, kCloser));
@@ -34,10 +52,15 @@ class Settler {
     result.places.assign(targets_.size(), {});
     result.page = {};
     displaced_.clear();
+    specks_.clear();
     sort_by_distance();
     for (std::uint32_t i : order_) {
       const Mask& mask = masks_[i];
       if (mask.cells == 0) continue;
+      if (targets_[i].anywhere) {
+        specks_.push_back(i);
+        continue;
+      }
       if (mask.width > side || mask.height > side) return false;
       BitPage::Place at;
       if (nearest_free(i, page, at) || (make_way(i, page, result) && nearest_free(i, page, at))) {
@@ -49,7 +72,7 @@ class Settler {
         return false;
       }
     }
-    if (!displaced_.empty() && !place_displaced(side, result)) return false;
+    if (!displaced_.empty() && !place_in_gaps(displaced_, side, result)) return false;
     measure(result);
     result.scale = scale;
     return true;
@@ -75,19 +98,12 @@ class Settler {
     measure(result);
   }
 
-  // Returns whether the last layout has charts that are far from their targets.
-  bool displaced() const { return !displaced_.empty(); }
-
- private:
-  static constexpr double kCloser = 0.8;
-  static constexpr std::int64_t kSmallShare = 60;
-
   bool is_small(std::uint32_t i, std::int64_t side) const {
     return masks_[i].cells * kSmallShare < side * side;
   }
 
-  // Puts small charts into any hole within the page that the others need.
-  bool place_displaced(std::int32_t side, PressedPage& result) {
+  // Puts small charts into any gap within the page that the others need, largest first.
+  bool place_in_gaps(std::vector<std::uint32_t>& small, std::int32_t side, PressedPage& result) {
     const std::int32_t a = options_.alignment;
     std::int32_t longest = 1;
     for (const Mask& m : masks_)
@@ -96,10 +112,10 @@ class Settler {
     for (std::uint32_t i : order_)
       if (const PressedPlace& p = result.places[i]; p.placed)
         page.put(masks_[i], {p.box.x / a, p.box.y / a});
-    std::stable_sort(displaced_.begin(), displaced_.end(), [&](std::uint32_t i, std::uint32_t j) {
+    std::stable_sort(small.begin(), small.end(), [&](std::uint32_t i, std::uint32_t j) {
       return masks_[i].cells > masks_[j].cells;
     });
-    for (std::uint32_t i : displaced_) {
+    for (std::uint32_t i : small) {
       measure(result);
       BitPage::Place at;
       const Mask& mask = masks_[i];
@@ -229,7 +245,7 @@ class Settler {
   double scale_;
   const FitOptions& options_;
   const Context& context_;
-  std::vector<std::uint32_t> order_, displaced_;
+  std::vector<std::uint32_t> order_, displaced_, specks_;
   std::vector<Mask> masks_;
   std::vector<Vec2d> origins_, wanted_;
 };
@@ -250,8 +266,7 @@ PressedPage settle(const SettleCharts& charts, const FitOptions& options, const 
   double low = 0, high = 1;
   for (double share : kShares) {
     if (context.cancelled()) return {};
-    const bool ok = settler.place_at(share, tried);
-    if (ok) settler.close_up(tried);
+    const bool ok = settler.place(share, tried);
     if (ok && (best.scale == 0 || fill(tried) > fill(best))) best = tried;
     if (ok && !settler.displaced()) {
       low = share;
@@ -261,8 +276,7 @@ PressedPage settle(const SettleCharts& charts, const FitOptions& options, const 
   }
   if (low > 0 && high > low) {
     const double middle = (low + high) / 2;
-    const bool ok = settler.place_at(middle, tried);
-    if (ok) settler.close_up(tried);
+    const bool ok = settler.place(middle, tried);
     if (ok && fill(tried) > fill(best)) best = tried;
   }
   return best;
@@ -272,8 +286,7 @@ PressedPage settle_at(double scale, const SettleCharts& charts, const FitOptions
                       const Context& context) {
   Settler settler(charts, options, context);
   PressedPage page;
-  if (!settler.place_at(scale / charts.scale, page)) return {};
-  settler.close_up(page);
+  if (!settler.place(scale / charts.scale, page)) return {};
   page.scale = scale;
   return page;
 }

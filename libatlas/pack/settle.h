@@ -16,7 +16,8 @@ struct SettleCharts {
 
 // Places every chart on free cells as near to its target as possible, at a scale below that of the
 // targets that is as large as possible, and then moves the charts together, down and to the left.
-// Small charts may go elsewhere. If no scale works, the result has scale 0.
+// Small charts may go elsewhere, and specks go into the gaps that are left. If no scale works, the
+// result has scale 0.
 PressedPage settle(const SettleCharts& charts, const FitOptions& options, const Context& context);
 
 // Does the same at exactly this scale, which is at most that of the targets. If charts find no

@@ -3,12 +3,19 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <limits>
+#include <utility>
 #include <vector>
 
 #include "libatlas/texture/lanes.h"
 
 namespace atlas {
 namespace {
+
+// The most that a display value may change in all, relative to the threshold of one halving. A ramp
+// that its quads allow to be halved stays below it, also in the corner, where there is nothing to
+// interpolate with.
+constexpr double kMostOfThreshold = 2;
 
 using Texel = SampledChart::Texel;
 static_assert(sizeof(Texel) == sizeof(Lanes));
@@ -121,8 +128,12 @@ void blend_rows(const SampledChart& in, const Between& row, std::vector<Lanes>& 
     out[i] = (1 - row.share) * load(low[i]) + row.share * load(high[i]);
 }
 
-// Measures the errors of `full` against the bilinear values of `small`'s covered texels.
-void measure(const SampledChart& full, const SampledChart& small, Downsizing& out) {
+// Measures the errors of `full` against the bilinear values of `small`'s covered texels. Returns
+// false, at the first such row, if an error exceeds the limit.
+bool measure(const SampledChart& full, const SampledChart& small, float limit, Downsizing& out) {
+  out.square_sum = 0;
+  out.max_error = 0;
+  out.covered = 0;
   const std::vector<Between> columns = places(full.width, small.width, out.halvings);
   const std::vector<Between> rows = places(full.height, small.height, out.halvings);
   std::vector<Lanes> line(static_cast<std::size_t>(small.width));
@@ -144,17 +155,20 @@ void measure(const SampledChart& full, const SampledChart& small, Downsizing& ou
       most = larger_lanes(most, error);
     }
     for (int k = 0; k < 3; ++k) out.square_sum += double{square[k]};
+    out.max_error = largest_channel(most);
+    if (!(out.max_error <= limit)) return false;
   }
-  out.max_error = largest_channel(most);
+  return true;
 }
 
-}  // namespace
-
-Downsizing downsize(const SampledChart& full, const TextureOptions& options, HalvedCharts& room) {
-  Downsizing out;
+// Halves the texture at most `most` times, as long as the quads allow it. Returns the last texture.
+const SampledChart* halve_up_to(int most, const SampledChart& full, const TextureOptions& options,
+                                std::pair<HalvedCharts&, Downsizing&> into) {
+  auto& [room, out] = into;
   const auto threshold = static_cast<float>(options.threshold);
   const SampledChart* last = &full;
-  while (std::max(last->width, last->height) > 1 &&
+  out.halvings = 0;
+  while (out.halvings < most && std::max(last->width, last->height) > 1 &&
          (std::min(last->width, last->height) + 1) / 2 >= options.min_side &&
          halve(*last, threshold, room[out.halvings % 2])) {
     last = &room[out.halvings % 2];
@@ -162,7 +176,18 @@ Downsizing downsize(const SampledChart& full, const TextureOptions& options, Hal
   }
   out.width = last->width;
   out.height = last->height;
-  measure(full, *last, out);
+  return last;
+}
+
+}  // namespace
+
+Downsizing downsize(const SampledChart& full, const TextureOptions& options, HalvedCharts& room) {
+  Downsizing out;
+  const auto most = static_cast<float>(kMostOfThreshold * options.threshold);
+  const SampledChart* last =
+      halve_up_to(std::numeric_limits<int>::max(), full, options, {room, out});
+  while (!measure(full, *last, most, out) && out.halvings > 0)
+    last = halve_up_to(out.halvings - 1, full, options, {room, out});
   return out;
 }
 

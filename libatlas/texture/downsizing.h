@@ -23,6 +23,10 @@ using HalvedCharts = std::array<SampledChart, 2>;
 // step). In every 2x2 quad, the mean of the covered texels must differ from each of them by less
 // than options.threshold in every channel. No side may fall below options.min_side. Quads are
 // aligned to the corner; at odd sides the last quad is narrower.
+//
+// Quads do not see edges that lie between them, such as those of tiles of 16 texels, which
+// interpolation then smears over ever more texels. So the last halvings are taken back until the
+// interpolated texture differs from the full one by twice the threshold at most.
 Downsizing downsize(const SampledChart& full, const TextureOptions& options, HalvedCharts& room);
 
 }  // namespace atlas
