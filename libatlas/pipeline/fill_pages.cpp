@@ -16,6 +16,10 @@ namespace {
 // for several pages, and for one page that takes the shape that suits its charts best. Pages that
 // are filled to less than the last count as poorly filled.
 constexpr double kFilled = 0.7, kFilledSeveral = 0.68, kFilledFree = 0.65;
+// A strip that is as long as the page of free shape keeps all charts coarse, however full that page
+// is: a road of 1:200 got 11 rows of texels. So pages that are more slender than this count as if
+// they had the rest of the room, too, unless charts already have the density asked for.
+constexpr double kMostSlender = 12;
 // A page of free shape is filled by cutting only if it has at most this many charts. With more,
 // laying out takes seconds for each way of cutting.
 constexpr std::size_t kMostChartsFree = 300;
@@ -44,9 +48,15 @@ struct Goal {
   double texels;  // area of the charts at scale 1
 
   double covered(const PageLayout& layout) const {  // share of the pages, at most 1
-    if (options.free_aspect) return layout.uv_utilization;
+    if (options.free_aspect) return slenderness(layout) * layout.uv_utilization;
     const double room = double(options.pages) * options.page_size * options.page_size;
     return texels * layout.scale * layout.scale / room;
+  }
+  // Returns the factor by which a page of free shape is too slender.
+  double slenderness(const PageLayout& layout) const {
+    if (layout.scale >= 1 || layout.pages.size() != 1) return 1;
+    const auto [shorter, longer] = std::minmax(layout.pages[0].width, layout.pages[0].height);
+    return longer > 0 ? std::min(1.0, kMostSlender * shorter / longer) : 1;
   }
   bool several() const { return options.pages > 1; }
   double enough(std::size_t charts) const {

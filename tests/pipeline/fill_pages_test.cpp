@@ -42,6 +42,20 @@ TEST(FillPages, AStripIsCutForASquarePage) {
   EXPECT_NEAR(cut.charts.seam_length, 0.05 * double(cut.charts.charts.size() - 2), 0.02);
 }
 
+// A page as slender as a road would leave it coarse. A less slender strip is worth no seams.
+TEST(FillPages, ARoadIsCutForAPageOfFreeShape) {
+  const UnwrapOptions free{.page_size = 512};
+  const Shape road = grid(600, 3, 200, 1);
+  const UnwrappedMesh whole = unwrap(road, free, 0), cut = unwrap(road, free);
+  EXPECT_EQ(whole.charts.charts.size(), 1u);
+  EXPECT_LT(whole.pages[0].height, 8);
+  EXPECT_GT(std::min(cut.pages[0].width, cut.pages[0].height), 512 / 2);
+  EXPECT_GT(cut.utilization, 0.6);
+  EXPECT_GT(cut.texels_per_unit, 8 * whole.texels_per_unit);
+  EXPECT_LE(cut.charts.charts.size(), 20u);
+  EXPECT_EQ(unwrap(grid(60, 6, 10, 1), free).charts.charts.size(), 1u);
+}
+
 // A single sheet as large as four pages.
 TEST(FillPages, ASheetIsCutForSeveralPages) {
   const UnwrapOptions four{.pages = 4, .page_size = 256};
