@@ -41,7 +41,8 @@ void add_scene_options(CLI::App& app, ExportCommand& command, RawText& raw) {
       ->default_str("y");
 }
 
-void add_chart_options(CLI::App& app, ExportOptions& options) {
+void add_chart_options(CLI::App& app, ExportCommand& command) {
+  ExportOptions& options = command.options;
   const OptionGroup group(app, "Charts");
   app.add_option("--cone", options.charts.cone_degrees,
                  "Largest angle between a chart's axis and its normals, degrees; 0: no limit but "
@@ -51,7 +52,7 @@ void add_chart_options(CLI::App& app, ExportOptions& options) {
   app.add_option("--max-stretch", options.charts.max_stretch,
                  "Bound on the stretch over 99.9 % of every chart")
       ->capture_default_str()
-      ->check(within(1 + 1e-6, 1e30, "above 1"));
+      ->check(within(1 + 1e-6, 1e30, "at least 1.000001"));
   app.add_option("--crease", options.charts.crease_degrees,
                  "Edges sharper than this are preferred as seams, degrees")
       ->capture_default_str()
@@ -63,9 +64,9 @@ void add_chart_options(CLI::App& app, ExportOptions& options) {
       "--keep-uv-charts", options.charts.keep_uv_charts,
       "Keep the charts of the scene's own texture coordinates and their shapes, whatever "
       "they stretch; flatten anew only those that are flipped, overlapping or missing");
-  app.add_option("--uv-aspect", options.charts.uv_aspect,
-                 "With --keep-uv-charts: width / height of the page that they were made for")
-      ->capture_default_str()
+  app.add_option("--uv-aspect", command.uv_aspect,
+                 "With --keep-uv-charts: width / height of the page that they were made for; "
+                 "without it, what the file says if libatlas wrote it, else 1")
       ->needs(keep)
       ->check(positive());
   app.add_option("--preset", options.charts.preset, "Chart quality: fast, default or best")
@@ -218,7 +219,7 @@ std::optional<ExportCommand> parse_export_command(int argc, char** argv, int& ex
   ExportCommand command;
   RawText raw;
   add_scene_options(app, command, raw);
-  add_chart_options(app, command.options);
+  add_chart_options(app, command);
   add_texture_options(app, command.options, raw);
   add_page_options(app, command.options);
   add_run_options(app, command);

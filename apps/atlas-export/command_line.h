@@ -13,6 +13,7 @@ struct ExportCommand {
   std::filesystem::path scene, report;  // report: empty if not asked for
   ReadOptions read;
   ExportOptions options;
+  std::optional<double> uv_aspect;  // nothing: what the scene's file says of it
   bool plan_only = false, quiet = false;
   int threads = 0;
 };

@@ -211,8 +211,11 @@ Status run(const app::ExportCommand& command, app::Terminal& terminal) {
   const StageReport reading = reading_stage(*loaded, cpu, wall);
   if (command.plan_only) return plan(command, *loaded, reading, terminal);
   terminal.line(stage_line(reading));
+  ExportOptions options = command.options;
+  options.charts.uv_aspect =
+      command.uv_aspect.value_or(loaded->uv_aspect > 0 ? loaded->uv_aspect : 1);
   Result<ExportReport> report = export_world(
-      *loaded, command.options, [&](const StageReport& stage) { terminal.line(stage_line(stage)); },
+      *loaded, options, [&](const StageReport& stage) { terminal.line(stage_line(stage)); },
       context);
   if (!report.ok()) return report.status();
   print_result(*report, command.options.keep_scene, terminal);

@@ -159,9 +159,11 @@ CLI::Validator within(double low, double high, const std::string& text) {
         char* end = nullptr;
         const double value = std::strtod(input.c_str(), &end);
         const bool number = end != input.c_str() && *end == 0 && std::isfinite(value);
-        return number && value >= low && value <= high
-                   ? std::string()
-                   : fmt::format("'{}' must be {}", input, text);
+        if (number && value >= low && value <= high) return std::string();
+        const bool huge = number && value > high && text.find("..") == std::string::npos &&
+                          text.find("at most") == std::string::npos;
+        return huge ? fmt::format("'{}' must be {}, and at most {}", input, text, high)
+                    : fmt::format("'{}' must be {}", input, text);
       },
       text);
 }

@@ -24,6 +24,7 @@
 #include "libatlas/pipeline/part_gaps.h"
 #include "libatlas/pipeline/stage_recorder.h"
 #include "libatlas/scene/check_scene.h"
+#include "libatlas/scene/uv_page.h"
 #include "libatlas/simplify/simplify.h"
 #include "libatlas/texture/chart_textures.h"
 
@@ -380,10 +381,7 @@ std::string plain_pages_text(std::span<const Extent> pages) {
   if (pages.size() > 1)
     return fmt::format("uvs of {0} square pages, packed for {1} x {1} texels", pages.size(),
                        page.width);
-  return page.width == page.height
-             ? fmt::format("uvs of a square page, packed for {0} x {0} texels", page.width)
-             : fmt::format("uvs of a page of {} x {} texels: textures must have this shape",
-                           page.width, page.height);
+  return uv_page_text(page.width, page.height);
 }
 
 Result<ExportReport> export_world(const LoadedScene& loaded, const ExportOptions& options,

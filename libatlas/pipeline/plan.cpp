@@ -230,8 +230,8 @@ Status check_plan(const ExportPlan& plan, const ExportOptions& options) {
   if (!(across > 0))
     return {ErrorCode::bad_input, "no triangle has an area, nothing can be lit (check the scene)"};
   return {ErrorCode::bad_option,
-          fmt::format("ExportOptions::texel_metres: {:g} m is more than the whole scene, {:g} m "
-                      "across (check ExportOptions::texel_metres "
+          fmt::format("ExportOptions::texel_metres: {:g} m is more than the side of a square as "
+                      "large as all surfaces, {:g} m (check ExportOptions::texel_metres "
                       "and ReadOptions::metres_per_unit)",
                       plan.texel_metres, across)};
 }

@@ -38,6 +38,9 @@ struct LoadedScene {
   DefectReport defects = {};  // what was left out or replaced
   // Files that were read besides the scene's own: material libraries, buffers.
   std::vector<std::filesystem::path> files = {};
+  // Width / height of the page that the uvs were made for, if an OBJ or a glTF says so as libatlas
+  // writes it (scene/uv_page.h); else 0.
+  double uv_aspect = 0;
 };
 
 // Reads the scene at `path`; the extension (.obj .ply .off .stl .gltf .glb .wrl .wrz, any case)

@@ -268,6 +268,7 @@ Result<LoadedScene> SceneBuilder::finish(const ReadOptions& options, const Conte
   }
   sanitise_values();
   LoadedScene loaded;
+  loaded.uv_aspect = uv_aspect;
   Scene& scene = loaded.scene;
   scene.metres_per_unit = options.metres_per_unit;
   if (Status s = place_positions(scene); !s.ok()) return s;

@@ -74,6 +74,7 @@ class SceneBuilder {
   NamedFiles named_files;                    // finds material libraries and their textures
   LossCounts not_read;                       // Scene::not_read, without the materials' MTL lines
   std::vector<std::filesystem::path> files;  // LoadedScene::files
+  double uv_aspect = 0;                      // LoadedScene::uv_aspect
 
   // What the next faces belong to.
   std::uint32_t material = 0, object = 0;

@@ -128,7 +128,8 @@ TEST(Plan, ErrorsShowBeforeAnyWork) {
   options.texel_metres = 1;
   EXPECT_TRUE(check(1).ok());
   EXPECT_EQ(check(0.5).code(), ErrorCode::bad_option);
-  EXPECT_NE(check(0.5).message().find("1 m is more than the whole scene, 0.5 m across"),
+  EXPECT_NE(check(0.5).message().find("1 m is more than the side of a square as large as all "
+                                      "surfaces, 0.5 m"),
             std::string::npos)
       << check(0.5).message();
   EXPECT_EQ(check(0).code(), ErrorCode::bad_input);

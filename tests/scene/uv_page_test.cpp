@@ -1,0 +1,64 @@
+// What files say of the page that their uvs were made for.
+#include "libatlas/scene/uv_page.h"
+
+#include <gtest/gtest.h>
+
+#include "libatlas/scene/reader.h"
+#include "tests/scene/gltf_maker.h"
+#include "tests/scene/temp_folder.h"
+
+namespace atlas {
+namespace {
+
+using test::Gltf;
+using test::kSquare;
+using test::load_glb;
+using test::TempFolder;
+
+TEST(UvPage, TextsAreUnderstood) {
+  EXPECT_EQ(uv_aspect_of(uv_page_text(2048, 512)), 4);
+  EXPECT_EQ(uv_aspect_of("# " + uv_page_text(300, 1200)), 0.25);
+  EXPECT_EQ(uv_aspect_of(uv_page_text(77, 77)), 1);
+  for (const char* other :
+       {"", "#", "# a scene", "uvs of 3 square pages, packed for 64 x 64 texels",
+        "uvs of a page of ", "uvs of a page of 5", "uvs of a page of 5 x ", "uvs of a page of 5x5",
+        "uvs of a page of 0 x 5 texels", "uvs of a page of 5 x -5 texels",
+        "uvs of a page of 99999999999 x 5 texels", "the uvs of a page of 5 x 5 texels"})
+    EXPECT_EQ(uv_aspect_of(other), 0) << other;
+}
+
+TEST(UvPage, IsReadFromTheHeadOfAnObj) {
+  const TempFolder folder;
+  const std::string triangle = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n",
+                    line = "# " + uv_page_text(40, 10);
+  const auto aspect = [&](const std::string& text) {
+    const auto loaded = read_scene(folder.write("scene.obj", text), {}, {});
+    EXPECT_TRUE(loaded.ok()) << loaded.status().message();
+    return loaded->uv_aspect;
+  };
+  EXPECT_EQ(aspect(line + "\n" + triangle), 4);
+  EXPECT_EQ(aspect("# name\r\n" + line + "\r\n" + triangle), 4);
+  EXPECT_EQ(aspect(triangle), 0);
+  EXPECT_EQ(aspect("# name\n" + triangle + line), 0) << "not at the head";
+}
+
+TEST(UvPage, IsReadFromTheExtrasOfAGltf) {
+  const TempFolder folder;
+  Gltf g;
+  const int positions = g.floats(kSquare, "VEC3", 3);
+  const int indices = g.indices(std::vector<std::uint16_t>{0, 1, 2, 0, 2, 3});
+  g.single({{"attributes", {{"POSITION", positions}}}, {"indices", indices}});
+  const auto aspect = [&](const test::json& extras) {
+    g.j["asset"]["extras"] = extras;
+    const auto loaded = load_glb(folder, g);
+    EXPECT_TRUE(loaded.ok()) << loaded.status().message();
+    return loaded->uv_aspect;
+  };
+  EXPECT_EQ(aspect({{"info", {"other", uv_page_text(40, 10)}}}), 4);
+  EXPECT_EQ(aspect({{"info", {1, test::json::object(), nullptr}}}), 0);
+  EXPECT_EQ(aspect({{"info", uv_page_text(40, 10)}}), 0);
+  EXPECT_EQ(aspect("text"), 0);
+}
+
+}  // namespace
+}  // namespace atlas
