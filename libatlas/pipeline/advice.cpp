@@ -104,6 +104,10 @@ std::vector<std::string> advice_on(const ExportReport& report, const ExportOptio
         "ChartOptions::keep_uv_charts kept no chart: the scene's texture coordinates are missing, "
         "flipped or "
         "lie on each other (leave it out for charts of all new borders)");
+  if (report.triangles > 0 && report.surface_area == 0)
+    lines.push_back(
+        "no triangle has an area, so uvs say nothing (check how the scene was exported, and the "
+        "digits of its coordinates)");
   if (report.pages.empty() || report.gpu_bytes == 0) return lines;  // no light was baked
   if (report.pages.size() > kManyPages) lines.push_back(on_many_pages(report, options));
   const double texels_a_chart =

@@ -252,35 +252,6 @@ TEST(Export, ChartsOnlyNeedsNoLight) {
   EXPECT_NEAR(s.stretch_l2, m.stretch_l2, 0.01);
 }
 
-// Plain uvs say the shape of their page, so charts that are read again keep their shapes.
-TEST(Export, ChartsOfAPageThatIsNotSquareAreReadAgain) {
-  const TempFolder folder;
-  const Shape shape = together(grid(9, 9, 2, 1), moved(cap(24, 12, 0.8), 1, {0, 0, 3}));
-  LoadedScene scene;
-  scene.scene.positions = shape.positions;
-  scene.scene.indices = shape.indices;
-  ExportOptions options;
-  options.charts_only = true;
-  for (const char* name : {"a.obj", "a.glb", "a.gltf"}) {
-    options.target = folder / name;
-    options.charts.keep_uv_charts = false;
-    const auto first = export_world(scene, options, {}, {});
-    ASSERT_TRUE(first.ok()) << first.status().message();
-    const auto again = read_scene(options.target, {}, {});
-    ASSERT_TRUE(again.ok()) << again.status().message();
-    const PageReport& page = first->pages.at(0);
-    EXPECT_NE(page.width, page.height);
-    EXPECT_EQ(again->uv_aspect, double(page.width) / page.height) << name;
-    options.charts.keep_uv_charts = true;
-    options.charts.uv_aspect = again->uv_aspect;
-    options.target = folder / "b.obj";
-    const auto second = export_world(*again, options, {}, {});
-    ASSERT_TRUE(second.ok()) << second.status().message();
-    EXPECT_NEAR(second->distortion.stretch_l2, first->distortion.stretch_l2, 1e-5);
-    options.charts.uv_aspect = 1;
-  }
-}
-
 TEST(Export, PlainUvsOnSeveralPages) {
   const TempFolder folder;
   ExportOptions options = small_pages(folder);

@@ -1,0 +1,59 @@
+// What exports write is read again as it was.
+#include <gtest/gtest.h>
+
+#include "libatlas/pipeline/export_world.h"
+#include "libatlas/scene/check_scene.h"
+#include "libatlas/scene/reader.h"
+#include "tests/scene/temp_folder.h"
+#include "tests/support/shapes.h"
+
+namespace atlas::test {
+namespace {
+
+// Plain uvs say the shape of their page, so charts that are read again keep their shapes.
+TEST(ReadAgain, ChartsOfAPageThatIsNotSquareAreReadAgain) {
+  const TempFolder folder;
+  const Shape shape = together(grid(9, 9, 2, 1), moved(cap(24, 12, 0.8), 1, {0, 0, 3}));
+  LoadedScene scene;
+  scene.scene.positions = shape.positions;
+  scene.scene.indices = shape.indices;
+  ASSERT_TRUE(complete_scene(scene.scene).ok());
+  ExportOptions options;
+  options.charts_only = true;
+  for (const char* name : {"a.obj", "a.glb", "a.gltf"}) {
+    options.target = folder / name;
+    options.charts.keep_uv_charts = false;
+    const auto first = export_world(scene, options, {}, {});
+    ASSERT_TRUE(first.ok()) << first.status().message();
+    const auto again = read_scene(options.target, {}, {});
+    ASSERT_TRUE(again.ok()) << again.status().message();
+    const PageReport& page = first->pages.at(0);
+    EXPECT_NE(page.width, page.height);
+    EXPECT_EQ(again->uv_aspect, double(page.width) / page.height) << name;
+    options.charts.keep_uv_charts = true;
+    options.charts.uv_aspect = again->uv_aspect;
+    options.target = folder / "b.obj";
+    const auto second = export_world(*again, options, {}, {});
+    ASSERT_TRUE(second.ok()) << second.status().message();
+    EXPECT_NEAR(second->distortion.stretch_l2, first->distortion.stretch_l2, 1e-5);
+    options.charts.uv_aspect = 1;
+  }
+}
+
+// A scene whose corners lie in a line.
+TEST(ReadAgain, ASceneWithoutAreaIsNamed) {
+  const TempFolder folder;
+  folder.write("line.obj", "v 0 0 0\nv 1 0 0\nv 2 0 0\nf 1 2 3\n");
+  const auto scene = read_scene(folder / "line.obj", {}, {});
+  ASSERT_TRUE(scene.ok()) << scene.status().message();
+  ExportOptions options;
+  options.charts_only = true;
+  options.target = folder / "a.obj";
+  const auto report = export_world(*scene, options, {}, {});
+  ASSERT_TRUE(report.ok()) << report.status().message();
+  ASSERT_EQ(report->advice.size(), 1u);
+  EXPECT_NE(report->advice[0].find("no triangle has an area"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace atlas::test
