@@ -11,6 +11,7 @@
 #include <span>
 #include <vector>
 
+#include "libatlas/pipeline/thin_uvs.h"
 #include "tests/support/atlas_measure.h"
 
 namespace atlas::test {
@@ -217,6 +218,29 @@ TEST(DrawOnce, ChartsStayATexelOffThePagesEdge) {
     }
   }
   EXPECT_GT(moved, 5u);
+}
+
+// Where a page's side is no power of two, a move rounds uvs anew and may close slivers that are
+// just open. Such a move is not made.
+TEST(DrawOnce, NoMoveClosesASliver) {
+  constexpr std::int32_t kSide = 1000;
+  std::size_t moved = 0, open = 0;
+  for (unsigned seed = 0; seed < 300; ++seed) {
+    Drawn drawn = kite_between_walls(seed, 2.1);
+    drawn.pages = {{kSide, kSide}};
+    const auto thin = [&] {
+      std::size_t count = 0;
+      for (std::size_t i = 0; i < drawn.set.triangle_uv.size(); i += 3)
+        count += is_thin(std::span(drawn.set.triangle_uv).subspan(i).first<3>(), drawn.uvs);
+      return count;
+    };
+    const std::size_t before = thin();
+    moved += drawn.draw(1).moves.size();
+    open += before == 0;
+    EXPECT_LE(thin(), before) << seed;
+  }
+  EXPECT_GT(moved, 20u);
+  EXPECT_GT(open, 20u);
 }
 
 TEST(DrawOnce, LeavesChartsThatCancellingLeft) {
