@@ -232,6 +232,10 @@ Result<FitResult> fit_charts(const PackCommand& c, std::span<const FitItem> item
         fmt::format("--border {}, --padding {} and --align {} leave no room on a page of {} "
                     "texels (give smaller ones or a larger --page)",
                     o.border, o.padding, o.alignment, c.page_side));
+  if (o.power_of_two && !std::has_single_bit(static_cast<std::uint32_t>(c.page_side)))
+    return Status(ErrorCode::bad_option,
+                  fmt::format("--page {}: with --pot it must be a power of two (give {})",
+                              c.page_side, std::bit_floor(std::uint32_t(c.page_side))));
   const auto border = std::int32_t(border64);
   FitOptions fit;
   fit.pages = c.pages;
