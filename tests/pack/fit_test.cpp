@@ -199,21 +199,6 @@ TEST(FitPages, ManyItemsFillOnePage) {
   EXPECT_LT(r.scale, 1);
 }
 
-// Along the diagonal of a square page it would be larger, but the page would be all but empty.
-TEST(FitPages, ALoneLongChartLiesAlongTheSideOfItsPage) {
-  const test::ChartItems charts({{{0, 0}, {400, 0}, {400, 40}, {0, 0}, {400, 40}, {0, 40}}});
-  FitOptions o = tight(200);
-  o.free_aspect = true;
-  o.shapes = charts.shapes;
-  for (const PackPreset preset : {PackPreset::fast, PackPreset::standard, PackPreset::best}) {
-    o.preset = preset;
-    const FitResult r = fit(charts.items, o);
-    ASSERT_EQ(r.pages.size(), 1u);
-    EXPECT_EQ(std::minmax(r.pages[0].width, r.pages[0].height), std::pair(20, 200));
-    EXPECT_GT(r.utilization, 0.95);
-  }
-}
-
 // Pages are cropped to their charts even where pressing is not tried.
 TEST(FitPages, FreePagesAreCropped) {
   const test::ChartItems charts({{{0, 0}, {400, 0}, {400, 20}}, {{0, 0}, {400, 20}, {0, 20}}});

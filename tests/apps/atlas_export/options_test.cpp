@@ -284,6 +284,9 @@ TEST_F(ExportFlags, AdviceInTheReportNamesFlags) {
   const std::string advice = json["advice"][0];
   EXPECT_TRUE(holds(advice, "not the 1 mm of --texel")) << advice;
   EXPECT_FALSE(holds(advice, "Options::")) << advice;
+  const std::string told =
+      done("{0}/box.obj -o {0}/w.wrl --texel 1mm --threshold 0 --atlases 1 --atlas-size 64");
+  EXPECT_TRUE(holds(told, "atlas-export: " + advice + "\n")) << told;
 }
 
 // In the folder of the target, which has no parent in its name.
