@@ -26,7 +26,7 @@ std::string parse_page(const std::string& text, Extent& page) {
   const bool square = width.size() == all.size();
   Extent read_page{0, 0};
   if (!read(width, 1, read_page.width) ||
-      !read(square ? width : all.substr(width.size() + 1), square ? 1 : 0, read_page.height))
+      !read(square ? width : all.substr(width.size() + 1), 0, read_page.height))
     return fmt::format(
         "'{}' must be WIDTHxHEIGHT, e.g. 2048x2048, with sides of 1..{} (height 0: as low as can "
         "be)",

@@ -219,6 +219,21 @@ double largest_scale(std::span<const ChartShape> shapes, double page_area, const
   return std::sqrt(page_area / covered);
 }
 
+// Refuses options that leave no room on a page, or that contradict each other.
+Status check_page(const PackCommand& c, std::int64_t border, std::int64_t padding) {
+  const PackOptions& o = c.options;
+  if (c.page_side - 2 * border < o.alignment + 2 * padding)
+    return {ErrorCode::bad_option,
+            fmt::format("--border {}, --padding {} and --align {} leave no room on a page of {} "
+                        "texels (give smaller ones or a larger --page)",
+                        o.border, o.padding, o.alignment, c.page_side)};
+  if (o.power_of_two && !std::has_single_bit(static_cast<std::uint32_t>(c.page_side)))
+    return {ErrorCode::bad_option,
+            fmt::format("--page {}: with --pot it must be a power of two (give {})", c.page_side,
+                        std::bit_floor(static_cast<std::uint32_t>(c.page_side)))};
+  return {};
+}
+
 // Packs the charts on pages whose border is kept free: they are packed without it, then moved.
 Result<FitResult> fit_charts(const PackCommand& c, std::span<const FitItem> items,
                              std::span<const ChartShape> shapes, const Context& context) {
@@ -226,12 +241,7 @@ Result<FitResult> fit_charts(const PackCommand& c, std::span<const FitItem> item
   const std::int64_t border64 =
       (std::int64_t{o.border} + o.alignment - 1) / o.alignment * o.alignment;
   const std::int64_t padding = (std::max(o.padding, 0) + 1) / 2;
-  if (c.page_side - 2 * border64 < o.alignment + 2 * padding)
-    return Status(
-        ErrorCode::bad_option,
-        fmt::format("--border {}, --padding {} and --align {} leave no room on a page of {} "
-                    "texels (give smaller ones or a larger --page)",
-                    o.border, o.padding, o.alignment, c.page_side));
+  if (Status s = check_page(c, border64, padding); !s.ok()) return s;
   const auto border = std::int32_t(border64);
   FitOptions fit;
   fit.pages = c.pages;

@@ -43,7 +43,10 @@ const CLI::App& command_of(const CLI::App& app) {
 // Returns the beginning of a text that users wrote, which may have any length.
 std::string start_of(const std::string& text) {
   constexpr std::size_t kLongest = 120;
-  return text.size() > kLongest ? text.substr(0, kLongest) + "..." : text;
+  if (text.size() <= kLongest) return text;
+  std::size_t end = kLongest;
+  while (end > 0 && continues_character(text[end])) --end;
+  return text.substr(0, end) + "...";
 }
 
 // Returns the largest distance at which another word is taken for a misspelling of this one.

@@ -32,10 +32,6 @@ int complain(const char* name, std::string_view what) {
   return 1;
 }
 
-bool continues_character(char c) {
-  return (static_cast<unsigned char>(c) & 0xc0) == 0x80;  // in UTF-8
-}
-
 std::string shortened(std::string_view word) {
   constexpr std::size_t kLongest = 4096, kShown = 100;  // bytes
   if (word.size() <= kLongest) return std::string(word);
@@ -60,6 +56,10 @@ std::string without_controls(std::string_view text) {
 }
 
 }  // namespace
+
+bool continues_character(char c) {
+  return (static_cast<unsigned char>(c) & 0xc0) == 0x80;
+}
 
 void print(std::FILE* stream, std::string_view text) {
   errno = 0;

@@ -18,6 +18,9 @@ int run_program(const char* name, int argc, char** argv, int (*body)(int argc, c
 // Writes to stdout or stderr; never throws. A failure on stdout is reported when the program ends.
 void print(std::FILE* stream, std::string_view text);
 
+// Returns whether a byte of UTF-8 goes on with a character that an earlier byte has begun.
+bool continues_character(char c);
+
 // Returns a text, which may quote the contents of files, so that a terminal can show it: control
 // characters except line ends, which could change how everything after them looks, become '?', and
 // words longer than any path lose their middle.

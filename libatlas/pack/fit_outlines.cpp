@@ -216,9 +216,17 @@ Result<FitResult> fit_outlines(const FitCharts& charts, const FitOptions& option
   OutlineLayout best;
   bool found = search_scale(quarters, result, best);
   if (all.grid().directions > quarters.grid().directions) {
-    const double before = best.scale;
-    found = search_scale(all, result, best) || found;
-    if (best.scale > before) fit = &all;
+    OutlineLayout turned;
+    turned.scale = best.scale;
+    const bool found_turned = search_scale(all, result, turned);
+    // Along the diagonal of a page of any shape, a lone long chart is larger, but the page is all
+    // but empty.
+    const bool lone = found && options.free_aspect && items.size() == 1;
+    if (turned.scale > best.scale && !(lone && fill(all, turned) < fill(quarters, best))) {
+      best = std::move(turned);
+      fit = &all;
+    }
+    found = found || found_turned;
   }
   if (found && options.pages == 1 && items.size() < kManyItems) place_by_boxes(*fit, result, best);
   if (context.cancelled()) return Status::cancelled();

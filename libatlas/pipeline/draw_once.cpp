@@ -23,8 +23,10 @@ constexpr int kFarthest = kDrawnSteps / 4;  // along each axis, in steps
 // How many places are checked for neighbours, and how many of these are drawn.
 constexpr std::size_t kPlaces = 256, kDrawings = 16;
 
-// How far lookups and a move reach beyond a chart at most, in texels.
-constexpr double kReach = 3;
+// How far lookups and a move reach beyond a chart at most, in texels, once this is rounded outwards
+// to whole texels. Lookups read texels whose centres are less than a texel away, and a move takes
+// them at most a quarter of a texel further.
+constexpr double kReach = 1;
 
 struct Box {
   glm::dvec2 low{std::numeric_limits<double>::infinity()};

@@ -9,8 +9,10 @@
 #include <cmath>
 #include <random>
 #include <span>
+#include <utility>
 #include <vector>
 
+#include "libatlas/pipeline/thin_uvs.h"
 #include "tests/support/atlas_measure.h"
 
 namespace atlas::test {
@@ -217,6 +219,63 @@ TEST(DrawOnce, ChartsStayATexelOffThePagesEdge) {
     }
   }
   EXPECT_GT(moved, 5u);
+}
+
+// Adds a sheet with vertical sides, of slanted rows with a sliver on each.
+void add_sheet(Drawn& drawn, double left, double right, std::mt19937& random) {
+  constexpr std::uint32_t kRows = 30;
+  std::uniform_real_distribution<double> unit(0, 1);
+  std::vector<Vec2d> texels;
+  std::vector<std::uint32_t> corners;
+  for (std::uint32_t row = 0; row <= kRows; ++row) {
+    const double low = 100 + 20 * row + unit(random), high = low + 16 * unit(random);
+    texels.push_back({left, low});
+    texels.push_back({(left + right) / 2, (low + high) / 2 + 0.0003 * (1 + unit(random))});
+    texels.push_back({right, high});
+    const std::uint32_t a = 3 * row, b = a + 1, c = a + 2, d = a + 3, e = a + 5;
+    corners.insert(corners.end(), {a, c, b});
+    if (row < kRows) corners.insert(corners.end(), {a, b, d, b, c, e, b, e, d});
+  }
+  drawn.add(texels, corners);
+}
+
+// Two charts with sides slightly more than two texels apart are both moved. Either of them alone
+// may come nearer to where the other was, but if both did, lookups of both would read one texel.
+TEST(DrawOnce, NeighboursThatMovedAreSeenWhereTheyAre) {
+  int both = 0;
+  for (unsigned seed = 0; seed < 150; ++seed) {
+    std::mt19937 random(seed);
+    Drawn drawn;
+    const std::pair<double, double> left{60, 300.498}, right{302.502, 550};
+    for (const auto& [from, to] : {seed % 2 ? left : right, seed % 2 ? right : left})
+      add_sheet(drawn, from, to, random);
+    both += drawn.draw(1).moves.size() == 2;
+    EXPECT_EQ(drawn.measured().bleed, 0u) << seed;
+  }
+  EXPECT_GT(both, 20);
+}
+
+// Where a page's side is no power of two, a move rounds uvs anew, which may close slivers that are
+// just open. Such a move is not made.
+TEST(DrawOnce, NoMoveClosesASliver) {
+  std::size_t moved = 0;
+  for (unsigned seed = 0; seed < 600; ++seed) {
+    Drawn drawn = kite_between_walls(seed, 2.1);
+    drawn.pages = {{1000, 1000}};
+    const auto thin = [&](std::size_t triangle) {
+      return is_thin(std::span(drawn.set.triangle_uv).subspan(3 * triangle).first<3>(), drawn.uvs);
+    };
+    for (const std::size_t sliver : {2, 3}) {
+      float& height = drawn.uvs[drawn.set.triangle_uv[3 * sliver + 1]].y;
+      ASSERT_FALSE(thin(sliver));
+      float least = height;
+      for (; !thin(sliver); height = std::nextafter(height, 1.0F)) least = height;
+      height = least;
+    }
+    moved += drawn.draw(1).moves.size();
+    for (std::size_t t = 0; t < drawn.set.triangle_chart.size(); ++t) EXPECT_FALSE(thin(t)) << seed;
+  }
+  EXPECT_GT(moved, 20u);
 }
 
 TEST(DrawOnce, LeavesChartsThatCancellingLeft) {

@@ -93,6 +93,33 @@ TEST(Layout, BoxesHoldTheirChartsWhicheverWayTheyLie) {
   EXPECT_GT(turned, 0);
 }
 
+// Two right triangles take two boxes, but fit one if the second is turned. Their scale is 1 both
+// ways.
+TEST(Layout, OfTwoWaysAtFullSizeTheSmallerPagesWin) {
+  Shape triangles;
+  for (const float x : {0.0F, 2.0F}) {
+    const auto first = std::uint32_t(triangles.positions.size());
+    triangles.positions.insert(triangles.positions.end(), {{x, 0, 0}, {x + 1, 0, 0}, {x, 1, 0}});
+    triangles.indices.insert(triangles.indices.end(), {first, first + 1, first + 2});
+  }
+  MeshView mesh;
+  mesh.positions = triangles.positions;
+  mesh.indices = triangles.indices;
+  const Result<ChartSet> charts = make_charts(mesh, {}, {});
+  ASSERT_TRUE(charts.ok());
+  ASSERT_EQ(charts->charts.size(), 2u);
+  LayoutOptions options{.pages = 1, .page_size = 512, .padding = 1, .alignment = 1};
+  const std::vector<Vec2d> densities(2, {110, 110});
+  const auto texels = [&](bool outlines) {
+    options.outlines = outlines;
+    const Result<PageLayout> layout = lay_out_pages(*charts, densities, options, {});
+    EXPECT_TRUE(layout.ok() && layout->pages.size() == 1 && layout->scale == 1);
+    return layout.ok() ? layout->pages[0].area() : 0;
+  };
+  EXPECT_EQ(texels(false), 256 * 128);
+  EXPECT_EQ(texels(true), 128 * 128);
+}
+
 // Returns four ring sectors of three quarters of a turn each, and strips.
 Shape rings_and_strips() {
   Shape all = grid(1, 1, 0.01, 0.01);

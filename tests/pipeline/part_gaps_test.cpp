@@ -151,6 +151,47 @@ TEST(PartGaps, AreOpenedForTheLikelyScale) {
   EXPECT_EQ(open_part_gaps(pages, fine, tight.charts, {}).charts, 1u);
 }
 
+// A page that a long strip leaves all but empty has smaller charts than full pages have, so gaps
+// that were opened for a full page are too narrow. They are opened again.
+TEST(PartGaps, OnPoorPagesTheyAreOpenedOnceMore) {
+  Shape shape = grid(kColumns, kRows);
+  for (Vec3f& p : shape.positions) {
+    const double angle = 6.25 * p.x, r = 1.4 - 0.4 * p.y;
+    p = {float(r * std::cos(angle)), float(r * std::sin(angle)), p.x};
+  }
+  shape = together(shape, moved(grid(100, 1, 12, 0.02), 1, {0, 5, 0}));
+  std::vector<Vec2f> from_above;
+  for (const Vec3f& p : shape.positions) from_above.push_back({p.x / 16, p.y / 16});
+  MeshView mesh;
+  mesh.positions = shape.positions;
+  mesh.indices = mesh.texcoord_indices = shape.indices;
+  mesh.texcoords = from_above;
+  ChartOptions options;
+  options.keep_uv_charts = true;
+  auto made = make_charts(mesh, options, {});
+  ASSERT_TRUE(made.ok()) << made.status().message();
+  ASSERT_EQ(made->charts.size(), 2u);
+  for (Chart& chart : made->charts) chart.kept = false;
+  LayoutOptions layout{.pages = 1, .page_size = 256, .padding = 1, .alignment = 1};
+  layout.minimum_side = 0;
+  layout.outlines = layout.square = true;
+  const double texels = 256.0 * 256;
+  const PlainUvs uvs{mesh, options, filling_density(*made, texels)};
+  ChartSet once = *made, twice = *made;
+  const std::vector<Vec2d> density(2, {uvs.density, uvs.density});
+  open_part_gaps({mesh, options.max_stretch, texels}, density, once, {});
+  const auto page = fill_pages(uvs, layout, once, {});
+  ASSERT_TRUE(page.ok()) << page.status().message();
+  const double near = left_part_gaps(mesh, once, page->placements, {}).near_after;
+  ASSERT_GT(near, 1) << "the test is too easy";
+  const auto pages = fill_pages_apart(uvs, layout, twice, {});
+  ASSERT_TRUE(pages.ok()) << pages.status().message();
+  EXPECT_EQ(pages->left.near_after, 0);
+  EXPECT_EQ(pages->left.near_after,
+            left_part_gaps(mesh, twice, pages->layout.placements, {}).near_after);
+  EXPECT_EQ(pages->opened, 1u);
+}
+
 TEST(PartGaps, OnlyOpenedChartsThatOutgrowTheirPageGetFewerTexels) {
   Stair stair;
   const Vec2d steep{kDensity, 4 * kDensity};  // longer along v than along u

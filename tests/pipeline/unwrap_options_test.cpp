@@ -15,6 +15,7 @@
 #include "tests/pipeline/flat_mesh.h"
 #include "tests/pipeline/lit_scene.h"
 #include "tests/pipeline/unwrap_checks.h"
+#include "tests/support/atlas_measure.h"
 #include "tests/support/shapes.h"
 
 namespace atlas::test {
@@ -137,24 +138,33 @@ TEST(Unwrap, ChartsAreNotTurnedWhereThatIsForbidden) {
 
 // A kite whose lower sides bulge by less than a float's last places, as slivers do. Most such
 // charts are moved so that no texel is drawn twice.
+struct Kite {
+  std::vector<Vec3f> positions;
+  std::vector<std::uint32_t> indices{0, 1, 2, 0, 2, 3, 0, 4, 1, 1, 5, 2};
+  MeshView view;
+
+  explicit Kite(int seed) {
+    const float across = 10.0F + 0.37F * float(seed), bulge = 4e-6F;
+    positions = {{-across, 0, 0},
+                 {0.1F, -9, 0},
+                 {across, 0.3F, 0},
+                 {0, 8, 0},
+                 {-across / 2 + 0.05F, -4.5F - bulge, 0},
+                 {across / 2 + 0.05F, -4.35F - bulge, 0}};
+    view.positions = positions;
+    view.indices = indices;
+  }
+  Kite(const Kite&) = delete;
+};
+
 TEST(Unwrap, PlacementsSayWhereUvsLie) {
   UnwrapOptions options{.page_size = 1024, .packing = PackPreset::fast};
   options.charts.min_fill = 0;
   for (int seed = 0; seed < 40; ++seed) {
-    const float across = 10.0F + 0.37F * float(seed), bulge = 4e-6F;
-    const std::vector<Vec3f> positions{{-across, 0, 0},
-                                       {0.1F, -9, 0},
-                                       {across, 0.3F, 0},
-                                       {0, 8, 0},
-                                       {-across / 2 + 0.05F, -4.5F - bulge, 0},
-                                       {across / 2 + 0.05F, -4.35F - bulge, 0}};
-    const std::vector<std::uint32_t> indices{0, 1, 2, 0, 2, 3, 0, 4, 1, 1, 5, 2};
-    MeshView view;
-    view.positions = positions;
-    view.indices = indices;
-    const auto mesh = unwrap_mesh(view, options, {});
+    const Kite kite(seed);
+    const auto mesh = unwrap_mesh(kite.view, options, {});
     ASSERT_TRUE(mesh.ok()) << mesh.status().message();
-    for (std::size_t i = 0; i < indices.size(); ++i) {
+    for (std::size_t i = 0; i < kite.indices.size(); ++i) {
       const ChartPlacement& p = mesh->placements[mesh->charts.triangle_chart[i / 3]];
       const Vec2d at = page_texel(p, mesh->charts.uvs[mesh->charts.triangle_uv[i]]);
       const Extent page = mesh->pages[std::size_t(p.page)];
@@ -162,6 +172,47 @@ TEST(Unwrap, PlacementsSayWhereUvsLie) {
       EXPECT_NEAR(uv.x * page.width, at.x, 2e-3) << seed;
       EXPECT_NEAR(uv.y * page.height, at.y, 2e-3) << seed;
     }
+  }
+}
+
+// Counts texels that two triangles draw with a rasteriser of its own.
+std::uint64_t drawn_twice(const UnwrappedMesh& mesh) {
+  UvMesh uvs;
+  for (const Vec2f uv : mesh.uvs) {
+    uvs.uvs.push_back({uv.x, uv.y});
+    uvs.positions.push_back({uv.x, uv.y, 0});
+  }
+  for (std::size_t i = 0; i < mesh.indices.size(); i += 3) {
+    const std::uint32_t* c = &mesh.indices[i];
+    uvs.faces.push_back({{c[0], c[1], c[2]}, {c[0], c[1], c[2]}, 0});
+  }
+  return measure_atlas(uvs, mesh.pages[0].width, mesh.pages[0].height).overlap;
+}
+
+// Without mip levels, charts are moved so that no texel is drawn twice. With them, that needs a
+// texel more than their gutters have.
+TEST(Unwrap, WithMipLevelsChartsMoveOnlyIfTheirPaddingIsWider) {
+  struct Case {
+    std::int32_t padding, mip_levels;
+    bool moves;
+  };
+  for (const Case& c : {Case{2, 0, true}, Case{1, 1, false}, Case{2, 1, true}, Case{2, 2, false},
+                        Case{3, 2, true}}) {
+    UnwrapOptions options{.page_size = 1024, .padding = c.padding, .packing = PackPreset::fast};
+    options.mip_levels = c.mip_levels;
+    options.charts.min_fill = 0;
+    std::uint64_t told = 0, found = 0;
+    for (int seed = 0; seed < 40; ++seed) {
+      const Kite kite(seed);
+      const auto mesh = unwrap_mesh(kite.view, options, {});
+      ASSERT_TRUE(mesh.ok()) << mesh.status().message();
+      const std::uint64_t overlap = drawn_twice(*mesh);
+      EXPECT_GE(mesh->texels_drawn_twice, overlap) << seed;
+      told += mesh->texels_drawn_twice;
+      found += overlap;
+    }
+    EXPECT_EQ(told == 0, c.moves) << c.padding << ' ' << c.mip_levels << ": " << told;
+    EXPECT_EQ(found == 0, c.moves) << c.padding << ' ' << c.mip_levels << ": " << found;
   }
 }
 

@@ -182,8 +182,11 @@ TEST_F(AtlasPack, DeepBracketsAreNoSides) {
 // Opening the pipe once waited for the writer, and signals did not end that.
 TEST_F(AtlasPack, APipeWithoutAWriterCanBeInterrupted) {
   ASSERT_EQ(::mkfifo((dir_ / "pipe").c_str(), 0600), 0);
-  const RunResult r = run("rects pipe -o a.csv & sleep 0.5; kill $!; wait $!");
-  EXPECT_EQ(r.exit_code, 130) << r.output;
+  for (const char* signal : {"TERM", "HUP"}) {
+    const RunResult r =
+        run(fmt::format("rects pipe -o a.csv & sleep 0.5; kill -{} $!; wait $!", signal));
+    EXPECT_EQ(r.exit_code, 130) << signal << r.output;
+  }
   EXPECT_FALSE(fs::exists(dir_ / "a.csv"));
   const RunResult fed =
       run(fmt::format("rects pipe -o a.csv & (sleep 0.3; echo 5,6; sleep 0.3; echo 7,8) >'{}'; "

@@ -67,6 +67,20 @@ TEST_F(Mistakes, AMisspeltOptionIsTheReasonWhyAnotherIsMissing) {
                    "unknown option or one name too many: --extrude");
 }
 
+// The first 120 bytes are shown, but no half of a character.
+TEST_F(Mistakes, LongWordsAreToldByTheirBeginning) {
+  std::string accents;
+  for (int i = 0; i < 58; ++i) accents += "é";
+  const std::string words = "unknown option or one name too many: ";
+  expect_complaint(ATLAS_EXPORT, "t.obj -o a.obj --x" + accents + accents,
+                   words + "--x" + accents + "... (--help");
+  expect_complaint(ATLAS_EXPORT, "t.obj -o a.obj --xy" + accents + accents,
+                   words + "--xy" + accents + "... (--help");
+  const std::string longest = "--" + std::string(118, 'y');
+  expect_complaint(ATLAS_EXPORT, "t.obj -o a.obj " + longest, words + longest + " (--help");
+  expect_complaint(ATLAS_EXPORT, "t.obj -o a.obj " + longest + "yy", words + longest + "... (");
+}
+
 TEST_F(Mistakes, AMisspeltCommandIsToldBeforeItsOptions) {
   expect_complaint(ATLAS_PACK, "rect r.csv",
                    "'rect' is none of the commands rects, images, mesh: is rects meant? (--help "
