@@ -178,6 +178,26 @@ void write_result(const OutlineFit& fit, const FitOptions& options, OutlineLayou
   result.grouping = std::move(best.grouping);
 }
 
+// With more directions each chart finds a lower place, but the common scale does not always become
+// larger, because charts that lie askew keep others from lying straight. So four directions come
+// first, and more directions have to beat them. Returns the fit that found `best`; null if none
+// did.
+OutlineFit* search_directions(OutlineFit& quarters, OutlineFit& all, FitResult& result,
+                              OutlineLayout& best) {
+  const bool found = search_scale(quarters, result, best);
+  if (all.grid().directions <= quarters.grid().directions) return found ? &quarters : nullptr;
+  OutlineLayout turned;
+  turned.scale = best.scale;
+  const bool found_turned = search_scale(all, result, turned);
+  // Along the diagonal of a page of any shape, a lone long chart is larger, but the page is all but
+  // empty.
+  const bool lone = found && all.options().free_aspect && best.pieces.size() == 1;
+  if (turned.scale <= best.scale || (lone && fill(all, turned) < fill(quarters, best)))
+    return found || found_turned ? &quarters : nullptr;
+  best = std::move(turned);
+  return &all;
+}
+
 constexpr std::size_t kFewInRows = 64;  // charts
 
 // Returns whether a page that the search over cells has filled to this share is pressed in a second
@@ -205,29 +225,13 @@ Result<FitResult> fit_outlines(const FitCharts& charts, const FitOptions& option
   if (pressed && (many || options.tried > 0 || !is_straight(outlines))) return std::move(*pressed);
   FitOptions by_cells = options;
   if (pressed) by_cells.preset = PackPreset::standard;
-  // With more directions each chart finds a lower place, but the common scale does not always
-  // become larger, because charts that lie askew keep others from lying straight. So four
-  // directions come first, and more directions have to beat them.
   FitOptions by_quarters = by_cells;
   by_quarters.rotations = std::min(by_cells.rotations, 4u);
   OutlineFit quarters(items, outlines, by_quarters, context);
   OutlineFit all(items, outlines, by_cells, context);
-  OutlineFit* fit = &quarters;
   OutlineLayout best;
-  bool found = search_scale(quarters, result, best);
-  if (all.grid().directions > quarters.grid().directions) {
-    OutlineLayout turned;
-    turned.scale = best.scale;
-    const bool found_turned = search_scale(all, result, turned);
-    // Along the diagonal of a page of any shape, a lone long chart is larger, but the page is all
-    // but empty.
-    const bool lone = found && options.free_aspect && items.size() == 1;
-    if (turned.scale > best.scale && !(lone && fill(all, turned) < fill(quarters, best))) {
-      best = std::move(turned);
-      fit = &all;
-    }
-    found = found || found_turned;
-  }
+  OutlineFit* fit = search_directions(quarters, all, result, best);
+  const bool found = fit != nullptr;
   if (found && options.pages == 1 && items.size() < kManyItems) place_by_boxes(*fit, result, best);
   if (context.cancelled()) return Status::cancelled();
   if (pressed && (!found || (!options.free_aspect && best.scale <= pressed->scale)))

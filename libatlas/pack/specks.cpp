@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numeric>
 
+#include "libatlas/pack/fit_pages.h"
+
 namespace atlas::pack {
 namespace {
 
@@ -39,6 +41,7 @@ std::vector<std::uint32_t> charts_to_press(std::span<const ChartOutline> outline
   std::vector<std::uint32_t> pressed(outlines.size());
   std::iota(pressed.begin(), pressed.end(), 0u);
   if (outlines.size() <= kMostPressed) return pressed;
+  if (outlines.size() >= kManyItems) return {};
   double area = 0;
   for (const ChartOutline& o : outlines) area += o.area;
   if (!(area > 0)) return {};

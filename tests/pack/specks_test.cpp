@@ -58,7 +58,7 @@ TEST(Specks, AreNotMostOfThePage) {
   EXPECT_TRUE(to_press(stars(200)).empty());
   // So many small ones that only some of them would go into the gaps.
   Shapes shapes = stars(30);
-  add_boxes(2000, 6, 3, shapes);
+  add_boxes(900, 12, 9, shapes);
   EXPECT_TRUE(to_press(shapes).empty());
 }
 
