@@ -6,27 +6,17 @@
 #include <utility>
 
 #include "apps/atlas-pack/commands.h"
+#include "apps/atlas-pack/mesh_obj.h"
 #include "apps/atlas-pack/preview.h"
 #include "apps/atlas-pack/uv_charts.h"
 #include "apps/common/files.h"
 #include "libatlas/core/atomic_file.h"
-#include "libatlas/core/counting_sort.h"
 #include "libatlas/core/file_extension.h"
-#include "libatlas/core/text_buffer.h"
 #include "libatlas/pack/fit.h"
 #include "libatlas/scene/reader.h"
 
 namespace atlas::app {
 namespace {
-
-constexpr const char* kWithoutUv = "no_uv";
-
-struct RepackedMesh {
-  const Scene& scene;
-  const UvCharts& charts;
-  const FitResult& fit;
-  std::vector<Vec2d> uvs;  // new uvs, texels from the page's lower left corner, 3 per triangle
-};
 
 RepackedMesh repack(const Scene& scene, const UvCharts& charts, const FitResult& fit) {
   RepackedMesh mesh{scene, charts, fit, std::vector<Vec2d>(scene.indices.size())};
@@ -40,82 +30,6 @@ RepackedMesh repack(const Scene& scene, const UvCharts& charts, const FitResult&
     }
   }
   return mesh;
-}
-
-// Writes each uv once, where a face first uses it.
-class UvLines {
- public:
-  explicit UvLines(const RepackedMesh& mesh)
-      : mesh_(mesh), numbers_(mesh.scene.texcoords.size(), 0) {}
-
-  // Returns the number of a corner's uv on a page of this size; adds its line to `text` if it is
-  // new.
-  std::size_t number_of(std::size_t corner, Extent page, TextBuffer& text) {
-    std::size_t& vt = numbers_[mesh_.charts.same[mesh_.scene.texcoord_indices[corner]]];
-    if (vt != 0) return vt;
-    const auto fraction = [](double texels, std::int32_t side) {
-      return std::clamp(texels / side, 0.0, 1.0);  // -1e-17 is 0
-    };
-    const Vec2d uv = mesh_.uvs[corner];
-    text.text("vt ");
-    text.number(fraction(uv.x, page.width));
-    text.character(' ');
-    text.number(fraction(uv.y, page.height));
-    text.character('\n');
-    return vt = ++count_;
-  }
-
- private:
-  const RepackedMesh& mesh_;
-  std::vector<std::size_t> numbers_;  // 0: not written yet
-  std::size_t count_ = 0;
-};
-
-// Returns the mesh with its new uvs as OBJ: one material per page.
-std::string to_obj(const RepackedMesh& mesh, const std::string& material_file) {
-  const auto& [s, charts, fit, uvs] = mesh;
-  TextBuffer text;
-  text.text("# repacked by atlas-pack\n");
-  for (std::size_t page = 0; page < fit.pages.size(); ++page)  // the shape that textures must have
-    text.text(fmt::format("# page_{}: {} x {} texels\n", page, fit.pages[page].width,
-                          fit.pages[page].height));
-  text.text(fmt::format("mtllib {}\n", material_file));
-  for (const Vec3f& p : s.positions) {
-    text.text("v ");
-    text.position(s.origin, p);
-    text.character('\n');
-  }
-  std::string faces;
-  UvLines uv_lines(mesh);
-  const Buckets charts_of =
-      sort_into_buckets(charts.members.size(), fit.pages.size(),
-                        [&](std::size_t c) { return mesh.fit.placements[c].page; });
-  for (std::size_t page = 0; page < charts_of.size(); ++page) {
-    if (!charts_of[page].empty()) faces += fmt::format("usemtl page_{}\n", page);
-    for (const std::uint32_t c : charts_of[page]) {
-      for (const std::size_t t : charts.members[c]) {
-        faces += "f";
-        for (std::size_t corner = 3 * t; corner < 3 * t + 3; ++corner)
-          faces += fmt::format(" {}/{}", s.indices[corner] + 1,
-                               uv_lines.number_of(corner, fit.pages[page], text));
-        faces += "\n";
-      }
-    }
-  }
-  if (charts.without_uv > 0) faces += fmt::format("usemtl {}\n", kWithoutUv);
-  for (std::size_t t = 0; t < s.triangle_count(); ++t)
-    if (charts.chart[t] == UvCharts::kNone)
-      faces += fmt::format("f {} {} {}\n", s.indices[3 * t] + 1, s.indices[3 * t + 1] + 1,
-                           s.indices[3 * t + 2] + 1);
-  return text.bytes() + faces;
-}
-
-std::string to_mtl(const UvCharts& charts, const FitResult& fit) {
-  std::string text;
-  for (std::size_t page = 0; page < fit.pages.size(); ++page)
-    text += fmt::format("newmtl page_{}\nKd 1 1 1\n", page);
-  if (charts.without_uv > 0) text += fmt::format("newmtl {}\nKd 1 1 1\n", kWithoutUv);
-  return text;
 }
 
 std::filesystem::path material_file(std::filesystem::path mesh) {
@@ -300,12 +214,14 @@ Result<PackedAtlas> run_mesh(const PackCommand& c, const Context& context) {
   if (Status s = check_preview(c); !s.ok()) return s;
   ReadOptions read;
   read.load_textures = false;
+  read.normals = true;
   Result<LoadedScene> loaded = read_scene(c.input, read, context);
   if (!loaded.ok()) return loaded.status();
   const Scene& scene = loaded->scene;
   for (const auto& file : loaded->files)
     if (Status s = check_output(material_file(c.output), {file}); !s.ok()) return s;
   for (const std::string& line : loaded->defects.lines()) context.say("defect: " + line);
+  for (const std::string& line : lost_in_obj(scene)) context.say("not kept: " + line);
   if (scene.texcoord_indices.empty())
     return Status(
         ErrorCode::bad_input,
