@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <span>
 #include <utility>
 
 #include "apps/atlas-pack/commands.h"
@@ -52,14 +53,13 @@ std::int32_t round_up(std::int32_t side) {
 }
 
 // Returns a picture in which each chart is a path of its triangles, y down.
-std::string to_svg(const RepackedMesh& mesh) {
+std::string to_svg(const RepackedMesh& mesh, std::span<const Rgb> colors) {
   const auto& [scene, charts, fit, uvs] = mesh;
   const PageRow row(fit.pages);
   std::string paths;
   for (std::size_t c = 0; c < charts.members.size(); ++c) {
     const std::uint32_t page = fit.placements[c].page;
-    std::uint8_t rgb[3];
-    item_color(c, rgb);
+    const Rgb& rgb = colors[c];
     const auto color = fmt::format("#{:02x}{:02x}{:02x}", rgb[0], rgb[1], rgb[2]);
     // The hairline covers the gaps that antialiasing leaves between triangles.
     paths += fmt::format("<path fill=\"{0}\" stroke=\"{0}\" stroke-width=\".3\" d=\"", color);
@@ -74,13 +74,12 @@ std::string to_svg(const RepackedMesh& mesh) {
   return to_svg(row, fit.pages, paths);
 }
 
-Status draw(const std::filesystem::path& path, const RepackedMesh& mesh, AtomicFiles& files) {
-  if (lower_extension(path) == ".svg") return files.write(path, to_svg(mesh));
+Status draw(const std::filesystem::path& path, const RepackedMesh& mesh,
+            std::span<const Rgb> colors, AtomicFiles& files) {
+  if (lower_extension(path) == ".svg") return files.write(path, to_svg(mesh, colors));
   const auto& [scene, charts, fit, uvs] = mesh;
   PreviewSheet sheet(fit.pages);
   for (std::size_t c = 0; c < charts.members.size(); ++c) {
-    std::uint8_t rgb[3];
-    item_color(c, rgb);
     for (const std::uint32_t t : charts.members[c]) {
       const Vec2d* p = &uvs[3 * std::size_t(t)];
       const double det =
@@ -98,7 +97,7 @@ Status draw(const std::filesystem::path& path, const RepackedMesh& mesh, AtomicF
         const double v = ((p[1].x - p[0].x) * qy - (p[1].y - p[0].y) * qx) / det;
         return u >= 0 && v >= 0 && u + v <= 1;
       };
-      sheet.fill(fit.placements[c].page, {x0, y0, x1 - x0 + 1, y1 - y0 + 1}, rgb, covered);
+      sheet.fill(fit.placements[c].page, {x0, y0, x1 - x0 + 1, y1 - y0 + 1}, colors[c], covered);
     }
   }
   return sheet.write(path, files);
@@ -249,12 +248,12 @@ Result<PackedAtlas> run_mesh(const PackCommand& c, const Context& context) {
   // A cancelled search returns what it has found so far.
   if (context.cancelled()) return Status::cancelled();
   const RepackedMesh mesh = repack(scene, charts, *fitted);
+  PackedAtlas atlas = describe(*fitted);
   AtomicFiles files;  // so that mesh, materials and preview appear together
   if (Status s = write_mesh(c.output, mesh, files); !s.ok()) return s;
   if (!c.preview.empty())
-    if (Status s = draw(c.preview, mesh, files); !s.ok()) return s;
+    if (Status s = draw(c.preview, mesh, item_colors(atlas), files); !s.ok()) return s;
   if (Status s = files.commit(); !s.ok()) return s;
-  PackedAtlas atlas = describe(*fitted);
   atlas.files = {c.output, material_file(c.output)};
   return atlas;
 }
