@@ -3,30 +3,21 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <span>
 #include <utility>
 
 #include "apps/atlas-pack/commands.h"
+#include "apps/atlas-pack/mesh_obj.h"
 #include "apps/atlas-pack/preview.h"
 #include "apps/atlas-pack/uv_charts.h"
 #include "apps/common/files.h"
 #include "libatlas/core/atomic_file.h"
-#include "libatlas/core/counting_sort.h"
 #include "libatlas/core/file_extension.h"
-#include "libatlas/core/text_buffer.h"
 #include "libatlas/pack/fit.h"
 #include "libatlas/scene/reader.h"
 
 namespace atlas::app {
 namespace {
-
-constexpr const char* kWithoutUv = "no_uv";
-
-struct RepackedMesh {
-  const Scene& scene;
-  const UvCharts& charts;
-  const FitResult& fit;
-  std::vector<Vec2d> uvs;  // new uvs, texels from the page's lower left corner, 3 per triangle
-};
 
 RepackedMesh repack(const Scene& scene, const UvCharts& charts, const FitResult& fit) {
   RepackedMesh mesh{scene, charts, fit, std::vector<Vec2d>(scene.indices.size())};
@@ -40,82 +31,6 @@ RepackedMesh repack(const Scene& scene, const UvCharts& charts, const FitResult&
     }
   }
   return mesh;
-}
-
-// Writes each uv once, where a face first uses it.
-class UvLines {
- public:
-  explicit UvLines(const RepackedMesh& mesh)
-      : mesh_(mesh), numbers_(mesh.scene.texcoords.size(), 0) {}
-
-  // Returns the number of a corner's uv on a page of this size; adds its line to `text` if it is
-  // new.
-  std::size_t number_of(std::size_t corner, Extent page, TextBuffer& text) {
-    std::size_t& vt = numbers_[mesh_.charts.same[mesh_.scene.texcoord_indices[corner]]];
-    if (vt != 0) return vt;
-    const auto fraction = [](double texels, std::int32_t side) {
-      return std::clamp(texels / side, 0.0, 1.0);  // -1e-17 is 0
-    };
-    const Vec2d uv = mesh_.uvs[corner];
-    text.text("vt ");
-    text.number(fraction(uv.x, page.width));
-    text.character(' ');
-    text.number(fraction(uv.y, page.height));
-    text.character('\n');
-    return vt = ++count_;
-  }
-
- private:
-  const RepackedMesh& mesh_;
-  std::vector<std::size_t> numbers_;  // 0: not written yet
-  std::size_t count_ = 0;
-};
-
-// Returns the mesh with its new uvs as OBJ: one material per page.
-std::string to_obj(const RepackedMesh& mesh, const std::string& material_file) {
-  const auto& [s, charts, fit, uvs] = mesh;
-  TextBuffer text;
-  text.text("# repacked by atlas-pack\n");
-  for (std::size_t page = 0; page < fit.pages.size(); ++page)  // the shape that textures must have
-    text.text(fmt::format("# page_{}: {} x {} texels\n", page, fit.pages[page].width,
-                          fit.pages[page].height));
-  text.text(fmt::format("mtllib {}\n", material_file));
-  for (const Vec3f& p : s.positions) {
-    text.text("v ");
-    text.position(s.origin, p);
-    text.character('\n');
-  }
-  std::string faces;
-  UvLines uv_lines(mesh);
-  const Buckets charts_of =
-      sort_into_buckets(charts.members.size(), fit.pages.size(),
-                        [&](std::size_t c) { return mesh.fit.placements[c].page; });
-  for (std::size_t page = 0; page < charts_of.size(); ++page) {
-    if (!charts_of[page].empty()) faces += fmt::format("usemtl page_{}\n", page);
-    for (const std::uint32_t c : charts_of[page]) {
-      for (const std::size_t t : charts.members[c]) {
-        faces += "f";
-        for (std::size_t corner = 3 * t; corner < 3 * t + 3; ++corner)
-          faces += fmt::format(" {}/{}", s.indices[corner] + 1,
-                               uv_lines.number_of(corner, fit.pages[page], text));
-        faces += "\n";
-      }
-    }
-  }
-  if (charts.without_uv > 0) faces += fmt::format("usemtl {}\n", kWithoutUv);
-  for (std::size_t t = 0; t < s.triangle_count(); ++t)
-    if (charts.chart[t] == UvCharts::kNone)
-      faces += fmt::format("f {} {} {}\n", s.indices[3 * t] + 1, s.indices[3 * t + 1] + 1,
-                           s.indices[3 * t + 2] + 1);
-  return text.bytes() + faces;
-}
-
-std::string to_mtl(const UvCharts& charts, const FitResult& fit) {
-  std::string text;
-  for (std::size_t page = 0; page < fit.pages.size(); ++page)
-    text += fmt::format("newmtl page_{}\nKd 1 1 1\n", page);
-  if (charts.without_uv > 0) text += fmt::format("newmtl {}\nKd 1 1 1\n", kWithoutUv);
-  return text;
 }
 
 std::filesystem::path material_file(std::filesystem::path mesh) {
@@ -138,14 +53,13 @@ std::int32_t round_up(std::int32_t side) {
 }
 
 // Returns a picture in which each chart is a path of its triangles, y down.
-std::string to_svg(const RepackedMesh& mesh) {
+std::string to_svg(const RepackedMesh& mesh, std::span<const Rgb> colors) {
   const auto& [scene, charts, fit, uvs] = mesh;
   const PageRow row(fit.pages);
   std::string paths;
   for (std::size_t c = 0; c < charts.members.size(); ++c) {
     const std::uint32_t page = fit.placements[c].page;
-    std::uint8_t rgb[3];
-    item_color(c, rgb);
+    const Rgb& rgb = colors[c];
     const auto color = fmt::format("#{:02x}{:02x}{:02x}", rgb[0], rgb[1], rgb[2]);
     // The hairline covers the gaps that antialiasing leaves between triangles.
     paths += fmt::format("<path fill=\"{0}\" stroke=\"{0}\" stroke-width=\".3\" d=\"", color);
@@ -160,13 +74,12 @@ std::string to_svg(const RepackedMesh& mesh) {
   return to_svg(row, fit.pages, paths);
 }
 
-Status draw(const std::filesystem::path& path, const RepackedMesh& mesh, AtomicFiles& files) {
-  if (lower_extension(path) == ".svg") return files.write(path, to_svg(mesh));
+Status draw(const std::filesystem::path& path, const RepackedMesh& mesh,
+            std::span<const Rgb> colors, AtomicFiles& files) {
+  if (lower_extension(path) == ".svg") return files.write(path, to_svg(mesh, colors));
   const auto& [scene, charts, fit, uvs] = mesh;
   PreviewSheet sheet(fit.pages);
   for (std::size_t c = 0; c < charts.members.size(); ++c) {
-    std::uint8_t rgb[3];
-    item_color(c, rgb);
     for (const std::uint32_t t : charts.members[c]) {
       const Vec2d* p = &uvs[3 * std::size_t(t)];
       const double det =
@@ -184,7 +97,7 @@ Status draw(const std::filesystem::path& path, const RepackedMesh& mesh, AtomicF
         const double v = ((p[1].x - p[0].x) * qy - (p[1].y - p[0].y) * qx) / det;
         return u >= 0 && v >= 0 && u + v <= 1;
       };
-      sheet.fill(fit.placements[c].page, {x0, y0, x1 - x0 + 1, y1 - y0 + 1}, rgb, covered);
+      sheet.fill(fit.placements[c].page, {x0, y0, x1 - x0 + 1, y1 - y0 + 1}, colors[c], covered);
     }
   }
   return sheet.write(path, files);
@@ -300,12 +213,14 @@ Result<PackedAtlas> run_mesh(const PackCommand& c, const Context& context) {
   if (Status s = check_preview(c); !s.ok()) return s;
   ReadOptions read;
   read.load_textures = false;
+  read.normals = true;
   Result<LoadedScene> loaded = read_scene(c.input, read, context);
   if (!loaded.ok()) return loaded.status();
   const Scene& scene = loaded->scene;
   for (const auto& file : loaded->files)
     if (Status s = check_output(material_file(c.output), {file}); !s.ok()) return s;
   for (const std::string& line : loaded->defects.lines()) context.say("defect: " + line);
+  for (const std::string& line : lost_in_obj(scene)) context.say("not kept: " + line);
   if (scene.texcoord_indices.empty())
     return Status(
         ErrorCode::bad_input,
@@ -333,12 +248,12 @@ Result<PackedAtlas> run_mesh(const PackCommand& c, const Context& context) {
   // A cancelled search returns what it has found so far.
   if (context.cancelled()) return Status::cancelled();
   const RepackedMesh mesh = repack(scene, charts, *fitted);
+  PackedAtlas atlas = describe(*fitted);
   AtomicFiles files;  // so that mesh, materials and preview appear together
   if (Status s = write_mesh(c.output, mesh, files); !s.ok()) return s;
   if (!c.preview.empty())
-    if (Status s = draw(c.preview, mesh, files); !s.ok()) return s;
+    if (Status s = draw(c.preview, mesh, item_colors(atlas), files); !s.ok()) return s;
   if (Status s = files.commit(); !s.ok()) return s;
-  PackedAtlas atlas = describe(*fitted);
   atlas.files = {c.output, material_file(c.output)};
   return atlas;
 }

@@ -30,7 +30,20 @@ Json frame_of(const PackedItem& item, bool with_page) {
   return frame;
 }
 
+// Returns the names of the other pages' data, from which loaders find all pages when they are given
+// one of them.
+Json other_pages(const PackedAtlas& atlas, std::uint32_t page) {
+  Json names = Json::array();
+  for (std::uint32_t p = 0; p < atlas.images.size(); ++p)
+    if (p != page) names.push_back(data_of_page(atlas.images[p]));
+  return names;
+}
+
 }  // namespace
+
+std::string data_of_page(const std::string& image) {
+  return std::filesystem::path(image).replace_extension(".json").string();
+}
 
 PackedAtlas make_atlas(std::vector<PackedItem> items, const PackResult& result) {
   PackedAtlas atlas;
@@ -80,6 +93,7 @@ std::string to_json(const PackedAtlas& atlas, DataFormat format, std::uint32_t p
   if (page != kAllPages) {
     if (page < atlas.images.size()) meta["image"] = atlas.images[page];
     meta["size"] = size(atlas.pages[page]);
+    if (atlas.images.size() > 1) meta["related_multi_packs"] = other_pages(atlas, page);
   } else {
     meta["pages"] = Json::array();
     for (Extent e : atlas.pages) meta["pages"].push_back(size(e));

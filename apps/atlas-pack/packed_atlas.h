@@ -34,8 +34,11 @@ PackedAtlas make_atlas(std::vector<PackedItem> items, const PackResult& result);
 
 std::string to_csv(const PackedAtlas& atlas);
 
+// Returns the name of the file that holds the frames of a page, from that of the page's image.
+std::string data_of_page(const std::string& image);
+
 // Returns the layout as JSON that game tools read. For the page kAllPages it lists all pages, each
-// frame with its page.
+// frame with its page. Otherwise it names the data of the other pages, if there are any.
 inline constexpr std::uint32_t kAllPages = 0xffffffffu;
 std::string to_json(const PackedAtlas& atlas, DataFormat format, std::uint32_t page);
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cstdint>
 #include <filesystem>
 #include <span>
@@ -16,8 +17,13 @@
 
 namespace atlas::app {
 
-// Computes a colour for item i as RGB; neighbours in the list differ in hue.
-void item_color(std::size_t i, std::uint8_t rgb[3]);
+using Rgb = std::array<std::uint8_t, 3>;
+
+// Returns a colour for every item. Of a few colours, each item gets the one that differs most from
+// those of its neighbours on the page before it in the list. Items are neighbours if their boxes
+// nearly touch. In lists too long to compare all pairs, colours only differ from those of the
+// neighbours in the list.
+std::vector<Rgb> item_colors(const PackedAtlas& atlas);
 
 // The positions of pages side by side with gaps between them, in texels.
 struct PageRow {
@@ -39,12 +45,12 @@ class PreviewSheet {
   // Calls inside(x, y) for the texels drawn in this part of a page, with coordinates from its lower
   // left corner, and colours those for which it returns true.
   template <class Inside>
-  void fill(std::uint32_t page, const Rect& part, const std::uint8_t rgb[3], const Inside& inside) {
+  void fill(std::uint32_t page, const Rect& part, const Rgb& rgb, const Inside& inside) {
     const Drawn& to = pages_[page];
     const auto first = [this](std::int32_t texel) { return (texel + step_ - 1) / step_; };
     for (std::int32_t y = first(part.y); y < std::min(to.height, first(part.top())); ++y)
       for (std::int32_t x = first(part.x); x < std::min(to.width, first(part.right())); ++x)
-        if (inside(x * step_, y * step_)) std::copy_n(rgb, 3, image_.at(to.left + x, y));
+        if (inside(x * step_, y * step_)) std::copy_n(rgb.data(), 3, image_.at(to.left + x, y));
   }
 
   // Writes the picture as one of `files`.

@@ -212,8 +212,7 @@ Status write_files(const PackCommand& c, const std::vector<Sprite>& sprites, Pac
       if (sprites[i].alias_of < 0 && atlas.items[i].at.page == p)
         blit(sprites[i], atlas.items[i].at, c.extrude, page);
     const fs::path image = c.output.parent_path() / atlas.images[p];
-    fs::path data = image;
-    data.replace_extension(".json");
+    const fs::path data = c.output.parent_path() / data_of_page(atlas.images[p]);
     for (const fs::path& file : {image, data})
       if (Status s = check_links(c, file); !s.ok()) return s;
     if (Status s = write_png(files.path_for(image), page, {}); !s.ok())

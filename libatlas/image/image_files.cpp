@@ -18,6 +18,7 @@
 #include "libatlas/core/write_error.h"
 #include "libatlas/image/file_kind.h"
 #include "libatlas/image/image_claim.h"
+#include "libatlas/image/webp_alpha.h"
 
 namespace atlas {
 namespace {
@@ -123,6 +124,57 @@ std::vector<std::uint8_t> head_of(const std::filesystem::path& path, std::uint64
   return head;
 }
 
+// Returns the extension by which OpenImageIO picks its reader, judged by the signature at the
+// start; null if the format is not PNG, JPEG or WebP.
+const char* extension_of(std::span<const std::uint8_t> bytes) {
+  if (begins_with(bytes, "\x89PNG")) return ".png";
+  if (begins_with(bytes, "\xff\xd8")) return ".jpg";
+  if (begins_with(bytes, "RIFF")) return ".webp";
+  return nullptr;
+}
+
+// Opens an encoded image in memory. `memory` must outlive the result.
+std::unique_ptr<OIIO::ImageInput> open_bytes(OIIO::Filesystem::IOMemReader& memory,
+                                             const char* extension) {
+  OIIO::Filesystem::IOProxy* proxy = &memory;
+  OIIO::ImageSpec config = input_settings();
+  config.attribute("oiio:ioproxy", OIIO::TypeDesc::PTR, &proxy);
+  return OIIO::ImageInput::open(std::string("embedded") + extension, &config, proxy);
+}
+
+// Returns whether a reader may have multiplied the colours by alpha though it was asked not to. Of
+// the formats whose colours do not depend on alpha, this concerns WebP: its reader ignores the
+// request in older releases of OpenImageIO, and obeys it without saying so in some newer ones.
+bool may_be_multiplied(const OIIO::ImageInput& input) {
+  return std::string_view(input.format_name()) == "webp" && input.spec().nchannels == 4 &&
+         input.spec().get_int_attribute("oiio:UnassociatedAlpha") == 0;
+}
+
+// Reads the colours of a WebP file again, from a copy without alpha. Dividing the multiplied ones
+// by alpha would not do: they have been rounded, and nothing is left of them where alpha is 0.
+template <class T>
+Status restore_colors(std::span<const std::uint8_t> file, const Source& source, Image<T>& image) {
+  const std::vector<std::uint8_t> opaque = without_webp_alpha(file);
+  OIIO::Filesystem::IOMemReader memory(const_cast<std::uint8_t*>(opaque.data()), opaque.size());
+  Source copy{open_bytes(memory, ".webp"), source.bytes, source.name};
+  if (!copy.input) return failure(source.name, "cannot be read as an image", OIIO::geterror());
+  Result<Image<T>> colors = read_pixels<T>(copy);
+  if (!colors.ok()) return colors.status();
+  if (colors->width != image.width || colors->height != image.height || colors->channels < 3)
+    return failure(source.name, "image is damaged", "alpha and colours differ in size");
+  for (int y = 0; y < image.height; ++y)
+    for (int x = 0; x < image.width; ++x) std::copy_n(colors->at(x, y), 3, image.at(x, y));
+  return {};
+}
+
+Result<std::vector<std::uint8_t>> whole_file(const Source& source) {
+  std::vector<std::uint8_t> bytes(source.bytes);
+  std::ifstream file(source.name, std::ios::binary);
+  if (!file.read(reinterpret_cast<char*>(bytes.data()), std::streamsize(bytes.size())))
+    return failure(source.name, "cannot be read as an image", "it has changed while it was read");
+  return bytes;
+}
+
 template <class T>
 Result<Image<T>> read(const std::filesystem::path& path) {
   std::error_code error;
@@ -139,17 +191,13 @@ Result<Image<T>> read(const std::filesystem::path& path) {
     const OIIO::ImageSpec config = input_settings();
     source.input = OIIO::ImageInput::open(source.name, &config);
     if (!source.input) return failure(path, "cannot be read as an image", OIIO::geterror());
-    return read_pixels<T>(source);
+    Result<Image<T>> image = read_pixels<T>(source);
+    if (!image.ok() || !may_be_multiplied(*source.input)) return image;
+    const Result<std::vector<std::uint8_t>> file = whole_file(source);
+    if (!file.ok()) return file.status();
+    if (Status s = restore_colors<T>(*file, source, *image); !s.ok()) return s;
+    return image;
   });
-}
-
-// Returns the extension by which OpenImageIO picks its reader, judged by the signature at the
-// start; null if the format is not PNG, JPEG or WebP.
-const char* extension_of(std::span<const std::uint8_t> bytes) {
-  if (begins_with(bytes, "\x89PNG")) return ".png";
-  if (begins_with(bytes, "\xff\xd8")) return ".jpg";
-  if (begins_with(bytes, "RIFF")) return ".webp";
-  return nullptr;
 }
 
 // A file that remembers the reason of its first failure. OpenImageIO reports neither that a disk is
@@ -232,17 +280,16 @@ Result<Image8> decode(std::span<const std::uint8_t> bytes, const std::string& na
   const char* extension = extension_of(bytes);
   if (!extension) return failure(name, "cannot be read as an image", "not PNG, JPEG or WebP");
   OIIO::Filesystem::IOMemReader memory(const_cast<std::uint8_t*>(bytes.data()), bytes.size());
-  OIIO::Filesystem::IOProxy* proxy = &memory;
-  OIIO::ImageSpec config = input_settings();
-  config.attribute("oiio:ioproxy", OIIO::TypeDesc::PTR, &proxy);
   return within_memory(name, [&]() -> Result<Image8> {
     if (const auto claim = claim_of(bytes)) {
       if (Status s = check_claim(*claim, bytes.size(), name); !s.ok()) return s;
     }
-    Source source{nullptr, bytes.size(), name};
-    source.input = OIIO::ImageInput::open(std::string("embedded") + extension, &config, proxy);
+    Source source{open_bytes(memory, extension), bytes.size(), name};
     if (!source.input) return failure(name, "cannot be read as an image", OIIO::geterror());
-    return read_pixels<std::uint8_t>(source);
+    Result<Image8> image = read_pixels<std::uint8_t>(source);
+    if (!image.ok() || !may_be_multiplied(*source.input)) return image;
+    if (Status s = restore_colors<std::uint8_t>(bytes, source, *image); !s.ok()) return s;
+    return image;
   });
 }
 

@@ -17,7 +17,8 @@
 namespace atlas {
 
 // Reads any format that OpenImageIO supports as 8-bit values, with all channels and without colour
-// conversion (an sRGB file stays sRGB-encoded).
+// conversion (an sRGB file stays sRGB-encoded). Colours are not multiplied by alpha, unless the
+// file stores them so, as some TIFF files do.
 Result<Image8> read_image8(const std::filesystem::path& path);
 
 // The same for an encoded file (PNG, JPEG or WebP) in memory. Its bytes tell the format; `name` is

@@ -15,7 +15,8 @@ Extent shaped_page(Extent used, const PackOptions& options);
 std::int32_t square_width(const Problem& problem, std::int32_t most);
 
 // Solves the problem according to the preset. If the page is free, or is cropped and holds all
-// items, other widths are tried as well, and the smallest page is taken.
+// items, other widths are tried as well, and the smallest page is taken. Items of cropped pages are
+// moved together (pull_in.h).
 Layout solve_shape(const Problem& problem, const PackOptions& options, const Context& context,
                    PackResult& result);
 

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <set>
 #include <string>
 #include <utility>
 
@@ -74,6 +75,38 @@ TEST_F(AtlasPack, APageThatStaysMostlyEmptyIsNamedWithTheOptionThatCutsIt) {
   EXPECT_NE(run("images in -o out").output.find(words), std::string::npos);
   const RunResult cropped = run("images in -o out --crop");
   EXPECT_EQ(cropped.output.find("empty"), std::string::npos) << cropped.output;
+}
+
+// Starting from any page, the names lead to all others, and to no page twice.
+TEST_F(AtlasPack, EachPageNamesTheDataOfAllOthers) {
+  fs::create_directories(dir_ / "out");
+  fs::create_directories(dir_ / "in");
+  for (int k = 0; k < 3; ++k) {
+    const auto color = static_cast<std::uint8_t>(50 * k);
+    ASSERT_TRUE(
+        atlas::write_png(dir_ / fmt::format("in/{}.png", k), atlas::Image8(40, 40, 3, color), {})
+            .ok());
+  }
+  for (const char* format : {"hash", "array"}) {
+    const RunResult r = run(fmt::format("images in -o out/a.b --page 48x48 --data {}", format));
+    ASSERT_EQ(r.exit_code, 0) << r.output;
+    std::size_t frames = 0;
+    for (int page = 0; page < 3; ++page) {
+      const auto data = nlohmann::json::parse(read(fmt::format("out/a.b-{}.json", page)));
+      EXPECT_EQ(data["meta"]["image"], fmt::format("a.b-{}.png", page));
+      std::set<std::string> pages{fmt::format("a.b-{}.json", page)};
+      ASSERT_EQ(data["meta"]["related_multi_packs"].size(), 2u);
+      for (const std::string name : data["meta"]["related_multi_packs"]) {
+        EXPECT_TRUE(fs::exists(dir_ / "out" / name)) << name;
+        pages.insert(name);
+      }
+      EXPECT_EQ(pages.size(), 3u);
+      frames += data["frames"].size();
+    }
+    EXPECT_EQ(frames, 3u);
+  }
+  ASSERT_EQ(run("images in -o one --page 128x128").exit_code, 0);
+  EXPECT_FALSE(nlohmann::json::parse(read("one.json"))["meta"].contains("related_multi_packs"));
 }
 
 TEST_F(AtlasPack, PagesOfAnEarlierRunAreNamed) {

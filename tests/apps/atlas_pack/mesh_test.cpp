@@ -5,7 +5,9 @@
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
+#include <map>
 #include <nlohmann/json.hpp>
+#include <set>
 #include <sstream>
 #include <string>
 #include <utility>
@@ -137,6 +139,68 @@ TEST_F(AtlasPack, MeshChartsAreFoundByPlaceAndValueAndStayCharts) {
   const RunResult over = run("mesh other.obj -o mine.obj");
   EXPECT_EQ(over.exit_code, 2) << over.output;
   EXPECT_EQ(read("mine.mtl"), "newmtl red\n");
+}
+
+// Two objects, each with a chart on either page. Every corner keeps its normal and its object, and
+// what a face of the result shows is compared with the face of the same corners in the input.
+TEST_F(AtlasPack, MeshKeepsObjectsAndNormalsAndTellsWhatItDoesNotKeep) {
+  write("m.mtl", "newmtl red\nKd 1 0 0\nnewmtl blue\nKd 0 0 1\n");
+  std::string text = "mtllib m.mtl\nvn 0 0 1\nvn 0.6 0 0.8\n";
+  for (int k = 0; k < 4; ++k)
+    text += fmt::format("v {0} 0 0\nv {1} 0 0\nv {0} 1 0\nvt {0} 0\nvt {1} 0\nvt {0} 1\n", 10 * k,
+                        10 * k + 1);
+  const auto face = [](int k) {
+    return fmt::format("f {0}/{0}/1 {1}/{1}/2 {2}/{2}/1\n", 3 * k + 1, 3 * k + 2, 3 * k + 3);
+  };
+  text += "o left wing\nusemtl red\n" + face(0) + face(1) + "o hull\nusemtl blue\n" + face(2);
+  write("m.obj", text + face(3) + "f 1//2 5//1 9//1\nf 1 6 9\n");
+  const RunResult r = run("mesh m.obj --page 64 --pages 2 -o out.obj");
+  ASSERT_EQ(r.exit_code, 0) << r.output;
+  EXPECT_NE(r.output.find("not kept: 2 x materials (there is one a page instead)"),
+            std::string::npos)
+      << r.output;
+  std::istringstream lines(read("out.obj"));
+  std::string object;
+  std::map<std::string, int> faces;  // "object: points, normals"
+  std::vector<std::string> normals;
+  for (std::string line; std::getline(lines, line);) {
+    if (line.starts_with("o ")) object = line.substr(2);
+    if (line.starts_with("vn ")) normals.push_back(line);
+    int v[3], vt[3], n[3];
+    if (std::sscanf(line.c_str(), "f %d/%d/%d %d/%d/%d %d/%d/%d", &v[0], &vt[0], &n[0], &v[1],
+                    &vt[1], &n[1], &v[2], &vt[2], &n[2]) == 9 ||
+        std::sscanf(line.c_str(), "f %d//%d %d//%d %d//%d", &v[0], &n[0], &v[1], &n[1], &v[2],
+                    &n[2]) == 6)
+      ++faces[fmt::format("{}: {} {} {}, {} {} {}", object, v[0], v[1], v[2], n[0], n[1], n[2])];
+    else if (line.starts_with("f "))
+      ++faces[object + ": " + line];
+  }
+  EXPECT_EQ(normals, (std::vector<std::string>{"vn 0 0 1", "vn 0.6 0 0.8"}));
+  const std::map<std::string, int> wanted{
+      {"left wing: 1 2 3, 1 2 1", 1}, {"left wing: 4 5 6, 1 2 1", 1}, {"hull: 7 8 9, 1 2 1", 1},
+      {"hull: 10 11 12, 1 2 1", 1},   {"hull: 1 5 9, 2 1 1", 1},      {"hull: f 1 6 9", 1}};
+  EXPECT_EQ(faces, wanted);
+  // The result has no materials but those of its pages.
+  write("plain.obj", triangles_obj());
+  EXPECT_EQ(run("mesh plain.obj -o out.obj").output.find("not kept"), std::string::npos);
+}
+
+// A square that fills its page reaches its corners, and one with a gutter ends at a whole texel.
+TEST_F(AtlasPack, MeshUvsEndWhereChartsDo) {
+  write("m.obj",
+        "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\n"
+        "f 1/1 2/2 3/3\nf 1/1 3/3 4/4\n");
+  for (const int padding : {0, 2}) {
+    ASSERT_EQ(run(fmt::format("mesh m.obj --page 256 --padding {} -o out.obj", padding)).exit_code,
+              0);
+    const std::string low = padding ? "0.00390625" : "0", high = padding ? "0.99609375" : "1";
+    std::istringstream lines(read("out.obj"));
+    std::set<std::string> uvs;
+    for (std::string line; std::getline(lines, line);)
+      if (line.starts_with("vt ")) uvs.insert(line.substr(3));
+    EXPECT_EQ(uvs, (std::set<std::string>{low + " " + low, low + " " + high, high + " " + low,
+                                          high + " " + high}));
+  }
 }
 
 TEST_F(AtlasPack, MeshOptionsDoWhatTheySay) {

@@ -5,10 +5,13 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <cstdlib>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <sstream>
 #include <string>
+#include <tuple>
+#include <vector>
 
 #include "libatlas/image/image_io.h"
 #include "tests/apps/atlas_pack/run_pack.h"
@@ -216,6 +219,56 @@ TEST_F(AtlasPack, PreviewsOfPagesOfAnySizeAreSmall) {
   const std::uint8_t *item = picture->at(picture->width / 2, picture->height / 2),
                      *free = picture->at(picture->width * 7 / 8, picture->height * 7 / 8);
   EXPECT_FALSE(std::equal(item, item + 3, free));
+}
+
+// One page fills the picture; two have a white gap between them and none behind the last.
+TEST_F(AtlasPack, PreviewsAreAsWideAsTheirPages) {
+  write("a.csv", "60,32\n60,32\n");
+  for (const auto& [page, width, height] :
+       {std::tuple("64x64", 64, 64), {"64x32", 64 + 16 + 64, 32}}) {
+    ASSERT_EQ(
+        run(fmt::format("rects a.csv -o a.out.csv --page {} --preview p.png", page)).exit_code, 0);
+    const Result<Image8> picture = read_image8(dir_ / "p.png");
+    ASSERT_TRUE(picture.ok());
+    EXPECT_EQ(picture->width, width);
+    EXPECT_EQ(picture->height, height);
+    const std::uint8_t* corner = picture->at(picture->width - 1, 0);
+    EXPECT_EQ(std::count(corner, corner + 3, 51), 3) << page;  // free space of the last page
+  }
+}
+
+// Items that touch on the page differ in colour, wherever they are in the list.
+TEST_F(AtlasPack, NeighboursInAPreviewDifferInColour) {
+  std::string list;
+  for (int i = 0; i < 400; ++i) list += fmt::format("{},{}\n", 8 + i * 7 % 23, 8 + i * 5 % 19);
+  write("a.csv", list);
+  ASSERT_EQ(run("rects a.csv -o a.out.csv --page 512x512 --preview p.png --crop").exit_code, 0);
+  const Result<Image8> picture = read_image8(dir_ / "p.png");
+  ASSERT_TRUE(picture.ok());
+  struct Item {
+    int x, y, w, h;
+    const std::uint8_t* color;
+  };
+  std::vector<Item> items;
+  std::istringstream lines(read("a.out.csv"));
+  for (std::string line; std::getline(lines, line);) {
+    Item a{};
+    if (std::sscanf(line.c_str(), "%*d,0,%d,%d,%d,%d", &a.x, &a.y, &a.w, &a.h) != 4) continue;
+    a.color = picture->at(a.x + a.w / 2, picture->height - 1 - (a.y + a.h / 2));
+    items.push_back(a);
+  }
+  ASSERT_EQ(items.size(), 400u);
+  int touching = 0;
+  for (std::size_t i = 0; i < items.size(); ++i)
+    for (std::size_t j = 0; j < i; ++j) {
+      const Item &a = items[i], &b = items[j];
+      if (a.x > b.x + b.w || b.x > a.x + a.w || a.y > b.y + b.h || b.y > a.y + a.h) continue;
+      ++touching;
+      int difference = 0;
+      for (int c = 0; c < 3; ++c) difference += std::abs(a.color[c] - b.color[c]);
+      EXPECT_GE(difference, 30) << i << " and " << j;
+    }
+  EXPECT_GT(touching, 800);
 }
 
 // All files appear together or not at all.
