@@ -191,6 +191,10 @@ void add_mesh(CLI::App& app, PackCommand& c) {
   mesh->add_option("--pages,--max-pages", c.pages, "Pages at most")
       ->capture_default_str()
       ->check(within(1, 100000));
+  mesh->add_option("--uv-aspect", c.uv_aspect,
+                   "Width / height of the page that the mesh's uvs were made for; without it, what "
+                   "the file says if libatlas wrote it, else 1")
+      ->check(positive());
   mesh->add_option("--rotations", c.rotations,
                    "Directions tried: 1, 2, 4, 8, 12, ... 64; above 4 a single page's charts may "
                    "be turned by any angle")

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 
 #include "libatlas/pack/pack.h"
 
@@ -23,6 +24,7 @@ struct PackCommand {
   // mesh
   unsigned pages = 1, rotations = 16;
   int page_side = 2048;
+  std::optional<double> uv_aspect;  // nothing: what the mesh's file says of it
 };
 
 // Fills in the command. Returns -1 to go on, or the exit code with which the program should end

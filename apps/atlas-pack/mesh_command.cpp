@@ -216,7 +216,9 @@ Result<PackedAtlas> run_mesh(const PackCommand& c, const Context& context) {
   read.normals = true;
   Result<LoadedScene> loaded = read_scene(c.input, read, context);
   if (!loaded.ok()) return loaded.status();
-  const Scene& scene = loaded->scene;
+  Scene& scene = loaded->scene;
+  const double aspect = c.uv_aspect.value_or(loaded->uv_aspect > 0 ? loaded->uv_aspect : 1);
+  for (Vec2f& uv : scene.texcoords) uv.x = static_cast<float>(aspect * uv.x);
   for (const auto& file : loaded->files)
     if (Status s = check_output(material_file(c.output), {file}); !s.ok()) return s;
   for (const std::string& line : loaded->defects.lines()) context.say("defect: " + line);

@@ -9,6 +9,7 @@
 #include "libatlas/core/counting_sort.h"
 #include "libatlas/core/text_buffer.h"
 #include "libatlas/scene/losses.h"
+#include "libatlas/scene/uv_page.h"
 
 namespace atlas::app {
 namespace {
@@ -127,9 +128,12 @@ std::string to_obj(const RepackedMesh& mesh, const std::string& material_file) {
   const Scene& s = mesh.scene;
   TextBuffer text;
   text.text("# repacked by atlas-pack\n");
-  for (std::size_t page = 0; page < mesh.fit.pages.size(); ++page)  // the shape of the textures
-    text.text(fmt::format("# page_{}: {} x {} texels\n", page, mesh.fit.pages[page].width,
-                          mesh.fit.pages[page].height));
+  // The shape of the textures, for readers and, of a single page, for libatlas itself.
+  const std::vector<Extent>& pages = mesh.fit.pages;
+  if (pages.size() == 1) text.text("# " + uv_page_text(pages[0].width, pages[0].height) + "\n");
+  for (std::size_t page = 0; page < pages.size(); ++page)
+    text.text(
+        fmt::format("# page_{}: {} x {} texels\n", page, pages[page].width, pages[page].height));
   text.text(fmt::format("mtllib {}\n", material_file));
   for (const Vec3f& p : s.positions) {
     text.text("v ");

@@ -45,6 +45,31 @@ TEST_F(AtlasPack, MeshChartsAtUniformDensity) {
   EXPECT_GT(area(0), 0.1);
 }
 
+// A square on a page four times as wide as high has uvs a quarter as wide as high. Its shape is
+// known from --uv-aspect, or from what the file says of its page.
+TEST_F(AtlasPack, MeshUvsOfAPageThatIsNotSquare) {
+  const std::string square =
+      "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvt 0 0\nvt 0.25 0\nvt 0.25 1\nvt 0 1\n"
+      "f 1/1 2/2 3/3\nf 1/1 3/3 4/4\n";
+  write("plain.obj", square);
+  write("told.obj", "# name\n# uvs of a page of 2048 x 512 texels: textures\n" + square);
+  const auto sides = [&](const std::string& arguments) {
+    const RunResult r = run("mesh " + arguments + " --page 100 --padding 0 --crop -o out.obj");
+    EXPECT_EQ(r.exit_code, 0) << r.output;
+    std::string line;
+    for (std::istringstream lines(read("out.obj")); std::getline(lines, line);)
+      if (line.starts_with("# page_0: ")) return line;
+    return std::string();
+  };
+  EXPECT_EQ(sides("plain.obj --uv-aspect 4"), "# page_0: 100 x 100 texels");
+  EXPECT_EQ(sides("told.obj"), "# page_0: 100 x 100 texels");
+  EXPECT_EQ(sides("plain.obj"), "# page_0: 100 x 25 texels");
+  EXPECT_EQ(sides("told.obj --uv-aspect 1"), "# page_0: 100 x 25 texels");
+  // What was written is read again with its shape.
+  ASSERT_EQ(run("mesh out.obj --page 100 --padding 0 --crop -o again.obj").exit_code, 0);
+  EXPECT_NE(read("again.obj").find("# page_0: 100 x 25 texels"), std::string::npos);
+}
+
 // Positions are floats, so the written numbers are no longer than those read. -0 becomes 0.
 TEST_F(AtlasPack, MeshPositionsAreWrittenAsRead) {
   write("m.obj", "v 0.05 -0 0\nv 1.1 0 0\nv 0.05 0.3 0\nvt 0 0\nvt 1 0\nvt 0 1\nf 1/1 2/2 3/3\n");
