@@ -1,6 +1,8 @@
 // Internal: charts for tests of one page.
 #pragma once
 
+#include <gtest/gtest.h>
+
 #include <vector>
 
 #include "libatlas/pack/fit.h"
@@ -22,6 +24,16 @@ inline FitOptions options_for(const ChartItems& charts, int page_size) {
   o.free_aspect = true;
   o.shapes = charts.shapes;
   return o;
+}
+
+// Expects the same pages, and every chart at the same place.
+inline void expect_same(const FitResult& a, const FitResult& b) {
+  EXPECT_EQ(a.pages, b.pages);
+  ASSERT_EQ(a.placements.size(), b.placements.size());
+  for (std::size_t i = 0; i < a.placements.size(); ++i) {
+    EXPECT_EQ(a.placements[i].angle, b.placements[i].angle);
+    EXPECT_EQ(a.placements[i].box, b.placements[i].box);
+  }
 }
 
 }  // namespace atlas::test

@@ -236,11 +236,7 @@ TEST(Press, FewChartsOnOnePage) {
   ASSERT_TRUE(pressed.ok() && again.ok() && cells.ok());
   EXPECT_GT(pressed->utilization, cells->utilization);
   EXPECT_EQ(test::check_outlines(test::placed_shapes(charts, *pressed), pressed->pages, 1), "");
-  EXPECT_EQ(pressed->pages, again->pages);
-  for (std::size_t i = 0; i < charts.items.size(); ++i) {
-    EXPECT_EQ(pressed->placements[i].angle, again->placements[i].angle);
-    EXPECT_EQ(pressed->placements[i].box, again->placements[i].box);
-  }
+  test::expect_same(*pressed, *again);
 }
 
 // Stars leave much of any page empty. Such a page is drawn again, unless that cannot reach the
