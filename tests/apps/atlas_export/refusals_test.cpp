@@ -80,7 +80,7 @@ TEST_F(AtlasExport, AbsurdNumbers) {
         "--unit 0",          "--threshold nan",   "--bogus"}) {
     expect_refusal(scene, option.substr(0, option.find(' ')), option);
   }
-  expect_refusal(scene, "more than the whole scene", "-q --texel 1km");
+  expect_refusal(scene, "more than the side of a square", "-q --texel 1km");
   expect_refusal(scene, "more than once", "-o again.wrl");
 }
 
