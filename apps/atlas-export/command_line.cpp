@@ -103,7 +103,8 @@ void add_texture_options(CLI::App& app, ExportOptions& options, RawText& raw) {
   add_off_flag(app, "--ignore-texture-density", options.follow_textures,
                "Do not refine where the diffuse texture is finer than --texel");
   app.add_option("--threshold", options.threshold,
-                 "Textures are halved while no display value changes by more; 0: never")
+                 "A texture is halved while no display value changes by more, and by twice as much "
+                 "in all; 0: never")
       ->capture_default_str()
       ->check(within(0, 1));
   app.add_option("--min-side", options.min_side, "Halving stops at this side, texels")

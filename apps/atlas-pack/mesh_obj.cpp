@@ -9,6 +9,7 @@
 #include "libatlas/core/counting_sort.h"
 #include "libatlas/core/text_buffer.h"
 #include "libatlas/scene/losses.h"
+#include "libatlas/scene/obj_names.h"
 #include "libatlas/scene/uv_page.h"
 
 namespace atlas::app {
@@ -50,16 +51,6 @@ class UvLines {
   std::size_t count_ = 0;
 };
 
-// Returns the line that begins an object, without what would end a name. The first object may have
-// no name, as that of a file without objects.
-std::string object_line(const Scene& scene, std::uint32_t object) {
-  std::string name = object < scene.object_names.size() ? scene.object_names[object] : "";
-  for (char& c : name)
-    if (static_cast<unsigned char>(c) < 0x20 || c == '#' || c == '\\') c = '_';
-  if (name.find_first_not_of(' ') != std::string::npos) return "o " + name + "\n";
-  return object == 0 ? "" : fmt::format("o object{}\n", object);
-}
-
 // The triangles in the order of their charts' pages, and last those without uvs.
 std::vector<std::uint32_t> triangles_by_page(const RepackedMesh& mesh) {
   const Buckets charts_of =
@@ -80,7 +71,7 @@ class FaceLines {
   explicit FaceLines(const RepackedMesh& mesh) : mesh_(mesh), uv_lines_(mesh) {}
 
   void begin_object(std::uint32_t object) {
-    faces_.text(object_line(mesh_.scene, object));
+    faces_.text(obj_object_line(mesh_.scene, object));
     page_ = kNothing;
   }
 

@@ -12,22 +12,11 @@
 #include "libatlas/exporters/scene_writers.h"
 #include "libatlas/scene/gltf_losses.h"
 #include "libatlas/scene/gltf_source.h"
+#include "libatlas/scene/obj_names.h"
 
 namespace atlas {
 namespace fs = std::filesystem;
 namespace {
-
-// Returns a name as OBJ can hold it: there, a name ends with its line, or at a '#' after a blank.
-std::string obj_name(const std::string& name) {
-  std::string result = one_line(name);
-  for (std::size_t i = 0; i < result.size(); ++i) {
-    const bool behind_blank = i == 0 || result[i - 1] == ' ' || result[i - 1] == '\t';
-    if (result[i] == '#' && behind_blank) result[i] = '_';
-  }
-  const auto first = result.find_first_not_of(" \t");
-  if (first == std::string::npos) return {};
-  return result.substr(first, result.find_last_not_of(" \t") + 1 - first);
-}
 
 // Returns the names of the materials, all different, because MTL identifies a material only by its
 // name.
@@ -142,15 +131,6 @@ void write_normals(TextFile& file, const Scene& scene, const std::vector<std::ui
   });
 }
 
-// Returns the line that begins an object. The first object may have no name, as in the scene's own
-// file; others without a name get one.
-std::string object_line(const Scene& scene, std::uint32_t object) {
-  const std::string name =
-      object < scene.object_names.size() ? obj_name(scene.object_names[object]) : "";
-  if (!name.empty()) return "o " + name + "\n";
-  return object == 0 ? "" : fmt::format("o object{}\n", object);
-}
-
 WorldFile write_parts(TextFile& file, const World& world, const std::vector<std::string>& names,
                       const Context& context) {
   const Scene& scene = *world.scene;
@@ -164,7 +144,7 @@ WorldFile write_parts(TextFile& file, const World& world, const std::vector<std:
     const ScenePart& part = parts[i];
     const std::size_t corners = 3 * part.triangles.size();
     const bool new_object = i == 0 || part.object != parts[i - 1].object;
-    if (new_object) file.write(object_line(scene, part.object));
+    if (new_object) file.write(obj_object_line(scene, part.object));
     if (new_object || part.material != parts[i - 1].material)
       file.write("usemtl " + names[part.material] + "\n");
     const std::span normals(lines.normals.indices);

@@ -1,15 +1,10 @@
 #include "libatlas/exporters/obj_text.h"
 
+#include "libatlas/scene/obj_names.h"
+
 #include "libatlas/scene/scene.h"
 
 namespace atlas {
-
-std::string one_line(std::string text) {
-  for (char& c : text) {
-    if (c == '\n' || c == '\r' || c == '\\') c = ' ';
-  }
-  return text;
-}
 
 void write_obj_head(TextFile& file, const World& world, const std::filesystem::path& mtl) {
   if (!world.title.empty()) file.write("# " + one_line(world.title) + "\n");

@@ -12,9 +12,6 @@
 
 namespace atlas {
 
-// Replaces line ends and backslashes by blanks, so that a comment or a name stays on its line.
-std::string one_line(std::string text);
-
 // Writes the title and the information of the world as comments, and the name of its MTL.
 void write_obj_head(TextFile& file, const World& world, const std::filesystem::path& mtl);
 

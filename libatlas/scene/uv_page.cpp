@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <charconv>
 
 namespace atlas {
@@ -36,7 +37,9 @@ double uv_aspect_of(std::string_view line) {
   if (width < 1 || !line.starts_with(kTimes)) return 0;
   line.remove_prefix(kTimes.size());
   const std::int32_t height = take_number(line);
-  return height < 1 ? 0 : double(width) / height;
+  // Longer pages than these do not exist, and charts of other ratios would be refused.
+  constexpr std::int32_t kLongest = 1 << 17;
+  return height < 1 || std::max(width, height) > kLongest ? 0 : double(width) / height;
 }
 
 }  // namespace atlas

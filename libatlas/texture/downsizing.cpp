@@ -4,7 +4,6 @@
 #include <cmath>
 #include <cstring>
 #include <limits>
-#include <utility>
 #include <vector>
 
 #include "libatlas/texture/lanes.h"
@@ -129,7 +128,7 @@ void blend_rows(const SampledChart& in, const Between& row, std::vector<Lanes>& 
 }
 
 // Measures the errors of `full` against the bilinear values of `small`'s covered texels. Returns
-// false, at the first such row, if an error exceeds the limit.
+// false, at the first such row, if an error exceeds the limit. The full texture itself has none.
 bool measure(const SampledChart& full, const SampledChart& small, float limit, Downsizing& out) {
   out.square_sum = 0;
   out.max_error = 0;
@@ -156,38 +155,42 @@ bool measure(const SampledChart& full, const SampledChart& small, float limit, D
     }
     for (int k = 0; k < 3; ++k) out.square_sum += double{square[k]};
     out.max_error = largest_channel(most);
-    if (!(out.max_error <= limit)) return false;
+    if (out.halvings > 0 && !(out.max_error <= limit)) return false;
   }
   return true;
 }
 
-// Halves the texture at most `most` times, as long as the quads allow it. Returns the last texture.
-const SampledChart* halve_up_to(int most, const SampledChart& full, const TextureOptions& options,
-                                std::pair<HalvedCharts&, Downsizing&> into) {
-  auto& [room, out] = into;
+// Halves the texture at most `most` times, as long as the quads allow it. Returns how often; the
+// last texture lies where halved() says.
+int halve_up_to(int most, const SampledChart& full, const TextureOptions& options,
+                HalvedCharts& room) {
   const auto threshold = static_cast<float>(options.threshold);
   const SampledChart* last = &full;
-  out.halvings = 0;
-  while (out.halvings < most && std::max(last->width, last->height) > 1 &&
+  int halvings = 0;
+  while (halvings < most && std::max(last->width, last->height) > 1 &&
          (std::min(last->width, last->height) + 1) / 2 >= options.min_side &&
-         halve(*last, threshold, room[out.halvings % 2])) {
-    last = &room[out.halvings % 2];
-    ++out.halvings;
+         halve(*last, threshold, room[halvings % 2])) {
+    last = &room[halvings % 2];
+    ++halvings;
   }
-  out.width = last->width;
-  out.height = last->height;
-  return last;
+  return halvings;
+}
+
+const SampledChart& halved(int times, const SampledChart& full, const HalvedCharts& room) {
+  return times == 0 ? full : room[(times - 1) % 2];
 }
 
 }  // namespace
 
 Downsizing downsize(const SampledChart& full, const TextureOptions& options, HalvedCharts& room) {
   Downsizing out;
-  const auto most = static_cast<float>(kMostOfThreshold * options.threshold);
-  const SampledChart* last =
-      halve_up_to(std::numeric_limits<int>::max(), full, options, {room, out});
-  while (!measure(full, *last, most, out) && out.halvings > 0)
-    last = halve_up_to(out.halvings - 1, full, options, {room, out});
+  const auto limit = static_cast<float>(kMostOfThreshold * options.threshold);
+  out.halvings = halve_up_to(std::numeric_limits<int>::max(), full, options, room);
+  while (!measure(full, halved(out.halvings, full, room), limit, out))
+    out.halvings = halve_up_to(out.halvings - 1, full, options, room);
+  const SampledChart& last = halved(out.halvings, full, room);
+  out.width = last.width;
+  out.height = last.height;
   return out;
 }
 

@@ -26,6 +26,21 @@ inline FitOptions options_for(const ChartItems& charts, int page_size) {
   return o;
 }
 
+// One page as it is pressed, on one thread and on three, and as the search over cells fills it.
+struct PressedOnThreads {
+  Result<FitResult> pressed, again, cells;
+};
+inline PressedOnThreads press_and_fill(const ChartItems& charts, FitOptions options) {
+  Context one, three;
+  one.threads = 1;
+  three.threads = 3;
+  FitOptions by_cells = options;
+  options.any_angle = true;
+  by_cells.any_angle = false;
+  return {fit_pages(charts.items, options, one), fit_pages(charts.items, options, three),
+          fit_pages(charts.items, by_cells, one)};
+}
+
 // Expects the same pages, and every chart at the same place.
 inline void expect_same(const FitResult& a, const FitResult& b) {
   EXPECT_EQ(a.pages, b.pages);

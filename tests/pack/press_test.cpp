@@ -226,13 +226,7 @@ TEST(Press, FewChartsOnOnePage) {
   const test::ChartItems charts(std::move(blobs));
   FitOptions o = options_for(charts, 512);
   o.power_of_two = false;
-  Context one, three;
-  one.threads = 1;
-  three.threads = 3;
-  const Result<FitResult> pressed = fit_pages(charts.items, o, one);
-  const Result<FitResult> again = fit_pages(charts.items, o, three);
-  o.any_angle = false;
-  const Result<FitResult> cells = fit_pages(charts.items, o, one);
+  const auto [pressed, again, cells] = test::press_and_fill(charts, o);
   ASSERT_TRUE(pressed.ok() && again.ok() && cells.ok());
   EXPECT_GT(pressed->utilization, cells->utilization);
   EXPECT_EQ(test::check_outlines(test::placed_shapes(charts, *pressed), pressed->pages, 1), "");

@@ -90,14 +90,7 @@ TEST(Specks, GoIntoTheGapsOfAPressedPage) {
   o.power_of_two = false;
   for (const bool free_aspect : {true, false}) {
     o.free_aspect = free_aspect;
-    o.any_angle = true;
-    Context one, three;
-    one.threads = 1;
-    three.threads = 3;
-    const Result<FitResult> pressed = fit_pages(charts.items, o, one);
-    const Result<FitResult> again = fit_pages(charts.items, o, three);
-    o.any_angle = false;
-    const Result<FitResult> cells = fit_pages(charts.items, o, one);
+    const auto [pressed, again, cells] = test::press_and_fill(charts, o);
     ASSERT_TRUE(pressed.ok() && again.ok() && cells.ok());
     if (free_aspect) {
       EXPECT_GT(pressed->utilization, 1.01 * cells->utilization);

@@ -23,7 +23,8 @@ TEST(UvPage, TextsAreUnderstood) {
        {"", "#", "# a scene", "uvs of 3 square pages, packed for 64 x 64 texels",
         "uvs of a page of ", "uvs of a page of 5", "uvs of a page of 5 x ", "uvs of a page of 5x5",
         "uvs of a page of 0 x 5 texels", "uvs of a page of 5 x -5 texels",
-        "uvs of a page of 99999999999 x 5 texels", "the uvs of a page of 5 x 5 texels"})
+        "uvs of a page of 99999999999 x 5 texels", "uvs of a page of 2000000000 x 1 texels",
+        "the uvs of a page of 5 x 5 texels"})
     EXPECT_EQ(uv_aspect_of(other), 0) << other;
 }
 

@@ -346,6 +346,11 @@ TEST(Downsizing, KeepsEdgesBetweenQuads) {
   EXPECT_EQ(d.halvings, 0);
   EXPECT_EQ(d.width, 256);
   EXPECT_EQ(d.max_error, 0);
+  // All texels are measured, also where a threshold turns downsizing off.
+  EXPECT_EQ(d.covered, 256 * 256);
+  TextureOptions off;
+  off.threshold = -1;
+  EXPECT_EQ(downsize(c, off, room).covered, 256 * 256);
   // Steps that interpolation may smear do not matter.
   for (auto& t : c.texels)
     for (float& v : t.rgb) v = 0.5f + 0.01f * (v - 0.5f);
