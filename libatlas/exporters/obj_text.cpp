@@ -1,7 +1,6 @@
 #include "libatlas/exporters/obj_text.h"
 
 #include "libatlas/scene/obj_names.h"
-
 #include "libatlas/scene/scene.h"
 
 namespace atlas {
