@@ -60,6 +60,9 @@ void add_chart_options(CLI::App& app, ExportCommand& command) {
   add_off_flag(app, "--across-materials", options.charts.split_at_materials,
                "Let a chart hold several materials: fewer charts, but light and texture blur "
                "into each other where they meet");
+  add_off_flag(app, "--across-light", options.split_at_light,
+               "Let a chart continue across creases at which the light jumps: fewer charts, but "
+               "the jump blurs over a texel");
   CLI::Option* keep = app.add_flag(
       "--keep-uv-charts", options.charts.keep_uv_charts,
       "Keep the charts of the scene's own texture coordinates and their shapes, whatever "
@@ -127,7 +130,8 @@ void add_page_options(CLI::App& app, ExportOptions& options) {
       ->capture_default_str()
       ->check(within(1, 64));
   app.add_option("--mips", options.mip_levels,
-                 "Mip levels whose lookups must not see a neighbouring chart")
+                 "Mip levels whose lookups must not see a neighbouring chart; uvs without light: 0 "
+                 "unless given")
       ->capture_default_str()
       ->check(within(0, 5));
   app.add_option("--bake", options.bake_method, "least-squares, or average (as published)")
@@ -238,6 +242,7 @@ std::optional<ExportCommand> parse_export_command(int argc, char** argv, int& ex
   }
   command.options.larger_plain_page = app.count("--atlas-size") == 0;
   if (app.count("--atlases") > 0) command.options.plain_pages = command.options.atlases;
+  if (app.count("--mips") > 0) command.options.plain_mip_levels = command.options.mip_levels;
   return command;
 }
 

@@ -7,7 +7,7 @@ namespace atlas::app {
 namespace {
 
 using FlagName = std::pair<std::string_view, std::string_view>;
-constexpr std::array<FlagName, 23> kFlagNames{{
+constexpr std::array<FlagName, 25> kFlagNames{{
     {"ExportOptions::atlases", "--atlases"},
     {"ExportOptions::plain_pages", "--atlases"},
     {"ExportOptions::atlas_size", "--atlas-size"},
@@ -15,12 +15,14 @@ constexpr std::array<FlagName, 23> kFlagNames{{
     {"ExportOptions::threshold", "--threshold"},
     {"ExportOptions::min_side", "--min-side"},
     {"ExportOptions::mip_levels", "--mips"},
+    {"ExportOptions::plain_mip_levels", "--mips"},
     {"ExportOptions::shifts", "--shifts"},
     {"ExportOptions::simplify_slip", "--slip"},
     {"ExportOptions::png_compression", "--png-level"},
     {"ExportOptions::charts_only", "--charts-only"},
     {"ExportOptions::keep_scene", "--keep-scene"},
     {"ExportOptions::quantity", "--quantity"},
+    {"ExportOptions::split_at_light", "--across-light"},
     {"ChartOptions::cone_degrees", "--cone"},
     {"ChartOptions::max_stretch", "--max-stretch"},
     {"ChartOptions::crease_degrees", "--crease"},

@@ -23,6 +23,9 @@ struct MeshView {
   // 3 a triangle, likewise; empty with one texcoord a position: those of `indices`. An index out of
   // range: that corner has none.
   std::span<const std::uint32_t> texcoord_indices = {};
+  // 3 a triangle, or empty: not 0 if its edge from that corner to the next is a seam, across which
+  // no chart continues. The triangle on either side may say so.
+  std::span<const std::uint8_t> seams = {};
 };
 
 enum class ChartPreset { fast, standard, best };

@@ -47,12 +47,15 @@ std::string on_small_charts(const ExportReport& report, double texels_a_chart) {
       report.charts.size(), texels_a_chart, 100 * (1 - report.uv_utilization));
 }
 
-std::string on_long_texels(const ExportReport& report, const ExportOptions& options,
-                           double texels_a_chart) {
+double packed_texel_mm(const ExportReport& report) {
+  return 1e3 * report.packed_texel * report.metres_per_unit;
+}
+
+std::string on_long_texels(const ExportReport& report, double texels_a_chart) {
   return fmt::format(
       "{} charts have {:.0f} texels each on average, {:.3g} mm long: little of the light is left "
       "(a shorter ExportOptions::texel_metres)",
-      report.charts.size(), texels_a_chart, 1e3 * options.texel_metres / report.scale);
+      report.charts.size(), texels_a_chart, packed_texel_mm(report));
 }
 
 std::string on_coarse_texels(const ExportReport& report, const ExportOptions& options) {
@@ -61,7 +64,7 @@ std::string on_coarse_texels(const ExportReport& report, const ExportOptions& op
       "pages hold no more (more "
       "ExportOptions::atlases or a larger ExportOptions::atlas_size, or a longer "
       "ExportOptions::texel_metres)",
-      1e3 * options.texel_metres / report.scale, 1e3 * options.texel_metres);
+      packed_texel_mm(report), 1e3 * options.texel_metres);
 }
 
 std::string on_white(const ExportReport& report) {
@@ -95,7 +98,7 @@ bool is_open(const Material& m, const Scene& scene) {
 
 std::vector<std::string> advice_on(const ExportReport& report, const ExportOptions& options) {
   // Below these limits, it shows that pages lack light that the scene has.
-  constexpr double kFewTexels = 32 * 32, kHardlyAny = 8 * 8, kLittleUsed = 0.4, kCoarse = 0.5;
+  constexpr double kFewTexels = 32 * 32, kHardlyAny = 8 * 8, kLittleUsed = 0.4, kCoarse = 2;
   constexpr std::size_t kManyCharts = 256;
   constexpr float kBlack = 6 / 255.0f;
   std::vector<std::string> lines;
@@ -109,16 +112,21 @@ std::vector<std::string> advice_on(const ExportReport& report, const ExportOptio
         "no triangle has an area, so uvs say nothing (check how the scene was exported, and the "
         "digits of its coordinates)");
   if (report.pages.empty() || report.gpu_bytes == 0) return lines;  // no light was baked
+  if (report.luminance.lit_area == 0 && report.luminance.unlit_area > 0)
+    lines.push_back(
+        "no light is above 0, so pages are black (check the simulation's result, and how it was "
+        "exported)");
   if (report.pages.size() > kManyPages) lines.push_back(on_many_pages(report, options));
+  const double asked = options.texel_metres / report.metres_per_unit;
+  const bool coarse = asked > 0 && report.packed_texel > kCoarse * asked;
   const double texels_a_chart =
       report.uv_utilization * page_texels(report) / double(report.charts.size());
   if (report.charts.size() >= kManyCharts && texels_a_chart < kFewTexels &&
       report.uv_utilization < kLittleUsed)
     lines.push_back(on_small_charts(report, texels_a_chart));
-  else if (options.texel_metres > 0 && report.scale >= kCoarse && texels_a_chart < kHardlyAny)
-    lines.push_back(on_long_texels(report, options, texels_a_chart));
-  if (options.texel_metres > 0 && report.scale < kCoarse)
-    lines.push_back(on_coarse_texels(report, options));
+  else if (asked > 0 && !coarse && texels_a_chart < kHardlyAny)
+    lines.push_back(on_long_texels(report, texels_a_chart));
+  if (coarse) lines.push_back(on_coarse_texels(report, options));
   // A measured white suits the light, even if all light is equal.
   if (options.tone.white <= 0 && options.tone.exposure_stops == 0) return lines;
   const LuminanceStatistics& light = report.luminance;

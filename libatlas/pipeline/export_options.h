@@ -32,6 +32,10 @@ struct ExportOptions {
   // Otherwise it has the shape that packs best, and textures for these uvs must have that shape.
   bool square_plain_page = false;
 
+  // As mip_levels, for plain uvs; 0..5. With 0, charts keep two texels between each other, which
+  // bilinear lookups need.
+  std::int32_t plain_mip_levels = 0;
+
   // The length of a texel on the real surface. 0: as fine as the budget could hold, within 1 to
   // 10 mm (paper, stage 2), or finer for scenes of centimetres.
   double texel_metres = 0;
@@ -39,6 +43,9 @@ struct ExportOptions {
   double threshold = 2.0 / 255;  // of downsizing, in display values; 0: no downsizing
   std::int32_t min_side = 16;    // downsizing makes no side shorter, texels
   Quantity quantity = Quantity::illuminance;
+  // A chart does not continue across a crease at which the light jumps visibly. Not with
+  // ChartOptions::keep_uv_charts.
+  bool split_at_light = true;
   ChartOptions charts = {};
   ToneOptions tone = {};
 

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <functional>
 #include <optional>
 
@@ -19,6 +20,7 @@
 #include "libatlas/pipeline/draw_once.h"
 #include "libatlas/pipeline/fill_pages.h"
 #include "libatlas/pipeline/layout_options.h"
+#include "libatlas/pipeline/light_seams.h"
 #include "libatlas/pipeline/longest_sides.h"
 #include "libatlas/pipeline/page_layout.h"
 #include "libatlas/pipeline/part_gaps.h"
@@ -58,9 +60,11 @@ class Export {
     const double cpu = own_cpu_seconds(), wall = wall_seconds();
     if (Status s = check_plan(plan_, options_); !s.ok()) return s;
     if (Status s = plan_.bake ? check_images(scene_) : Status(); !s.ok()) return s;
-    if (Status s = cut_charts(); !s.ok()) return s;
     if (plan_.bake) {
       if (Status s = expose(); !s.ok()) return s;
+    }
+    if (Status s = cut_charts(); !s.ok()) return s;
+    if (plan_.bake) {
       if (Status s = cut_long_charts(); !s.ok()) return s;
       if (Status s = size_textures(); !s.ok()) return s;
     }
@@ -90,9 +94,15 @@ class Export {
  private:
   Status cut_charts() {
     const Context& context = record_.begin("charts");
-    Result<ChartSet> charts = make_charts(view_of(scene_), options_.charts, context);
+    MeshView mesh = view_of(scene_);
+    const LightSeams seams = light_seams(context);
+    if (context.cancelled()) return Status::cancelled();
+    mesh.seams = seams.edges;
+    report_.light_seam_length = seams.length;
+    Result<ChartSet> charts = make_charts(mesh, options_.charts, context);
     if (!charts.ok()) return charts.status();
     charts_ = std::move(*charts);
+    if (plan_.bake) light_.emplace(ChartLight{*sampler_, charts_, tone_});
     report_charts();
     report_.surface_area = charts_.surface_area;
     report_.repairs = charts_.repairs;
@@ -105,6 +115,16 @@ class Export {
     }
     record_.finish({scene_.triangle_count(), charts_.charts.size(), "charts", quality});
     return {};
+  }
+
+  LightSeams light_seams(const Context& context) const {
+    if (!plan_.bake || !options_.split_at_light || options_.charts.keep_uv_charts) return {};
+    const double texel = plan_.texel_metres / scene_.metres_per_unit;
+    const double room = double(options_.atlases) * options_.atlas_size * options_.atlas_size;
+    const double afforded = std::sqrt(plan_.surface_area_m2 / room) / scene_.metres_per_unit;
+    LightSeamOptions seams;
+    seams.texel = std::max(texel, afforded);
+    return find_light_seams(*sampler_, tone_, seams, context);
   }
 
   // Must be called again whenever charts were cut.
@@ -122,7 +142,6 @@ class Export {
     Result<ToneMapping> tone = make_tone_mapping(options_.tone, *statistics);
     if (!tone.ok()) return tone.status();
     tone_ = *tone;
-    light_.emplace(ChartLight{*sampler_, charts_, tone_});
     report_.luminance = *statistics;
     report_.tone = tone_;
     report_.exposure_white = double(tone_.white) / tone_.scale;
@@ -137,6 +156,7 @@ class Export {
     texture.follow_textures = options_.follow_textures;
     texture.texture_sampling = texture_sampling(options_);
     texture.threshold = options_.threshold;
+    if (options_.exr) texture.brightest = report_.luminance.maximum;
     texture.min_side = options_.min_side;
     texture.max_side = options_.atlas_size - 2 * gutter_pad(options_.mip_levels);
     return texture;
@@ -224,6 +244,7 @@ class Export {
     report_.utilization = layout_.utilization;
     report_.uv_utilization = layout_.uv_utilization;
     report_.outlines = layout_.outlines;
+    if (plan_.bake) report_.packed_texel = packed_texel();
     std::string quality = fmt::format("scale {:.3f}, {:.0f} % used by charts", layout_.scale,
                                       100 * layout_.uv_utilization);
     if (charts_.charts.size() > uncut)
@@ -238,6 +259,17 @@ class Export {
       }
     }
     return {};
+  }
+
+  // Finer textures of charts count as the texel asked for.
+  double packed_texel() const {
+    double area = 0, texels = 0;
+    for (std::size_t c = 0; c < charts_.charts.size(); ++c) {
+      const double density = std::min(full_densities_[c].x, 1 / report_.texel) * layout_.scale;
+      area += charts_.charts[c].distortion.surface_area;
+      texels += charts_.charts[c].distortion.surface_area * density * density;
+    }
+    return texels > 0 ? std::sqrt(area / texels) : 0;
   }
 
   Status bake() {
@@ -307,7 +339,11 @@ class Export {
     report_.thin_triangles = assembled.thin_triangles;
     if (!plan_.bake) {
       const PlacedCharts placed{charts_, layout_.placements, layout_.pages};
-      report_.texels_drawn_twice = draw_once(placed, mesh.uv_indices, world.uvs, context).after;
+      // After a move, the texels that a chart owns for its mip levels would reach a texel further.
+      const DrawnTwice drawn = options_.plain_mip_levels == 0
+                                   ? draw_once(placed, mesh.uv_indices, world.uvs, context)
+                                   : drawn_twice(placed, mesh.uv_indices, world.uvs, context);
+      report_.texels_drawn_twice = drawn.after;
     }
     world.up = options_.up;
     world.title = options_.target.stem().string();

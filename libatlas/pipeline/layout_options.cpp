@@ -42,8 +42,8 @@ LayoutOptions layout_options(const ChartSet& charts, const ExportOptions& option
   } else {
     layout.pages = options.plain_pages;
     layout.page_size = plain_page_size(charts, options);
-    layout.padding = 1;
-    layout.alignment = 1;
+    layout.padding = gutter_pad(options.plain_mip_levels);
+    layout.alignment = 1 << options.plain_mip_levels;
     layout.minimum_side = 0;
     layout.square = options.square_plain_page || options.plain_pages > 1;
     layout.free_aspect = !layout.square;

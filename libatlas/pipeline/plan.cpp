@@ -94,6 +94,7 @@ class StepList {
       : scene_(scene), options_(options), plan_(plan) {}
 
   void make(std::uint64_t textured_triangles) {
+    exposure();
     add("charts", true, charts_reason(options_.charts));
     light(textured_triangles);
     pages();
@@ -110,12 +111,15 @@ class StepList {
     add(std::move(stage), plan_.bake && run, plan_.bake ? std::move(reason) : "no light to bake");
   }
 
-  void light(std::uint64_t textured_triangles) {
+  void exposure() {
     add("exposure", plan_.bake,
         plan_.bake     ? fmt::format("{} tone curve, {}", tone_operator_name(options_.tone.op),
                                  options_.tone.white > 0 ? "white given" : "white measured")
         : scene_.lit() ? "charts only were asked for"
                        : "the scene carries no illumination: plain uvs, no images");
+  }
+
+  void light(std::uint64_t textured_triangles) {
     add_baked("reflectance", plan_.sample_reflectance,
               options_.quantity == Quantity::luminance ? "the values are luminance already"
               : textured_triangles == 0                ? "no textures: one colour a material"

@@ -62,9 +62,11 @@ struct ExportReport {
   ToneMapping tone;
   double exposure_white = 0;  // scene luminance that becomes display white
   LuminanceStatistics luminance;
+  double light_seam_length = 0;  // of creases at which the light jumps, scene units
 
   // Textures
-  double texel = 0;  // the length asked for, scene units
+  double texel = 0;         // the length asked for, scene units
+  double packed_texel = 0;  // the mean length at the pages' scale, before halving, scene units
   std::int64_t full_texels = 0, final_texels = 0;
   std::uint64_t halved_charts = 0, uniform_charts = 0, unlit_charts = 0, capped_charts = 0,
                 raised_charts = 0;

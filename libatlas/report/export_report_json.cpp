@@ -131,12 +131,15 @@ Json charts_json(const ExportReport& r) {
 Json light_json(const ExportReport& r) {
   return {{"tone", tone_operator_name(r.tone.op)},
           {"white", r.exposure_white},
+          {"median", r.luminance.median},
           {"percentile99", r.luminance.percentile99},
+          {"percentile999", r.luminance.percentile999},
           {"maximum", r.luminance.maximum},
           {"mean", r.luminance.mean},
           {"log_average", r.luminance.log_average},
           {"lit_area", r.luminance.lit_area},
           {"unlit_area", r.luminance.unlit_area},
+          {"seam_length", r.light_seam_length},
           {"not_finite", r.luminance.not_finite},
           {"negative", r.luminance.negative}};
 }
@@ -144,6 +147,7 @@ Json light_json(const ExportReport& r) {
 Json textures_json(const ExportReport& r) {
   return {
       {"texel", r.texel},
+      {"packed_texel", r.packed_texel},
       {"full_texels", r.full_texels},
       {"final_texels", r.final_texels},
       {"saved_share", r.full_texels > 0 ? 1 - double(r.final_texels) / double(r.full_texels) : 0},

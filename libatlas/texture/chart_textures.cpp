@@ -27,6 +27,8 @@ Status check(const TextureOptions& o) {
     return bad("texture sampling", o.texture_sampling, "a factor above 0");
   if (!std::isfinite(o.threshold))
     return bad("downsizing threshold", o.threshold, "a display value (0 turns downsizing off)");
+  if (!(o.brightest >= 0) || !std::isfinite(o.brightest))
+    return bad("brightest light", o.brightest, "a luminance, or 0");
   if (o.min_side < 1) return bad("smallest texture side", o.min_side, "at least 1 texel");
   if (o.max_side < o.min_side || o.max_side > (1 << 16))
     return bad("largest texture side", o.max_side, "between the smallest side and 65536 texels");
@@ -104,13 +106,35 @@ struct Sizing {
   Pool<Room>& rooms;
 };
 
+// Whether the tone curve clips light of the chart. The corners decide; textures only darken.
+bool clips(const ChartLight& light, std::uint32_t id) {
+  const float white = light.tone.white / light.tone.scale;
+  for (const std::uint32_t t : triangles_of(light.charts, light.charts.charts[id])) {
+    for (const auto& e : light.sampler.prepare(t, 0).illumination)
+      if (std::max({e[0], e[1], e[2]}) > white) return true;
+  }
+  return false;
+}
+
+Downsizing downsize_shown(const Sizing& sizing, std::uint32_t id, double density,
+                          const ToneMapping& tone) {
+  std::unique_ptr<Room> room = sizing.rooms.take();
+  sample_chart({sizing.light.sampler, sizing.light.charts, tone}, id, density, room->full);
+  const Downsizing d = downsize(room->full, sizing.options, room->halved);
+  sizing.rooms.give(std::move(room));
+  return d;
+}
+
 void downsize_chart(const Sizing& sizing, std::uint32_t id, ChartTexture& out,
                     ChartOutcome& outcome) {
   const double density = out.full_texels_per_unit.x;
-  std::unique_ptr<Room> room = sizing.rooms.take();
-  sample_chart(sizing.light, id, density, room->full);
-  const Downsizing d = downsize(room->full, sizing.options, room->halved);
-  sizing.rooms.give(std::move(room));
+  Downsizing d = downsize_shown(sizing, id, density, sizing.light.tone);
+  if (d.halvings > 0 && sizing.options.brightest > 0 && clips(sizing.light, id)) {
+    ToneMapping unclipped;
+    unclipped.scale = static_cast<float>(1 / sizing.options.brightest);
+    const Downsizing bright = downsize_shown(sizing, id, density, unclipped);
+    if (bright.halvings < d.halvings) d = bright;
+  }
   out.sampled = true;
   out.halvings = d.halvings;
   out.width = d.width;

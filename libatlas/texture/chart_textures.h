@@ -33,6 +33,9 @@ struct TextureOptions {
   double threshold = 2.0 / 255;  // halve while |mean - texel| is below this; <= 0: no downsizing
   int min_side = 16;             // halving stops before a side falls below this
   int max_side = 2040;           // longest inner side that fits a page; finer charts are coarsened
+  // For pages that also hold light above display white (EXR): the threshold then applies to the
+  // light shown with this luminance as white, too. 0: light above display white does not count.
+  double brightest = 0;
 };
 
 enum class ChartContent : std::uint8_t { varied, uniform, unlit };

@@ -84,7 +84,10 @@ struct Collector {
     std::vector<float> seen =
         seen_values(samples, area_per_sample * static_cast<double>(samples.size()));
     out.seen = seen.size() >= kSeenNeeded;
-    out.percentile99 = nth(out.seen ? seen : peak, 0.99);
+    std::vector<float>& values = out.seen ? seen : peak;
+    out.percentile99 = nth(values, 0.99);
+    out.percentile999 = nth(values, 0.999);
+    out.median = nth(values, 0.5);
     out.minimum_log = std::log(nth(luma, 0.01));
     out.maximum_log = std::log(nth(luma, 0.99));
     const auto count = static_cast<double>(n);

@@ -88,6 +88,16 @@ void set_reinhard_devlin(ToneMapping& tone, const ToneOptions& o, const Luminanc
   tone.parameter[3] = 1 / at_white;
 }
 
+// Returns the white of a linear curve. Even light with a bright spot that covers less than a
+// hundredth would all be white with the 99th percentile, so the spot would vanish. White is then
+// one stop above, unless the spot is darker.
+double linear_white(const LuminanceStatistics& s) {
+  constexpr double kEven = 0.8, kBright = 1.5;
+  const double white = s.percentile99;
+  if (s.median < kEven * white || s.percentile999 < kBright * white) return white;
+  return std::min(2 * white, s.percentile999);
+}
+
 }  // namespace
 
 Status check_options(const ToneOptions& o) {
@@ -155,7 +165,7 @@ Result<ToneMapping> make_tone_mapping(const ToneOptions& options,
   tone.op = options.op;
   const bool linear = options.op == ToneOperator::linear;
   double white = options.white;
-  if (white <= 0) white = linear ? statistics.percentile99 : statistics.maximum;
+  if (white <= 0) white = linear ? linear_white(statistics) : statistics.maximum;
   if (!(white > 0)) white = 1;  // an unlit scene: any scale shows it black
   LuminanceStatistics s = statistics;
   if (!(s.log_average > 0)) s.log_average = white;

@@ -19,8 +19,9 @@ struct LuminanceStatistics {
   // Of max(R, G, B) over what is visible and lit: rays from the empty space inside the scene's box
   // (see docs/texture.md); if the scene encloses no space, over the lit surface by area.
   double percentile99 = 0;
-  bool seen = false;       // the former
-  double maximum = 0;      // of max(R, G, B) over the samples
+  double percentile999 = 0, median = 0;  // likewise
+  bool seen = false;                     // the former: what is visible
+  double maximum = 0;                    // of max(R, G, B) over the samples
   double log_average = 0;  // exp(mean ln Y) over the lit surface, Y = luma (Rec. 709 weights)
   double mean = 0;         // of Y over the lit surface
   Vec3f mean_rgb;          // over the lit surface
@@ -47,7 +48,8 @@ std::string_view tone_operator_name(ToneOperator op);
 struct ToneOptions {
   ToneOperator op = ToneOperator::linear;
   // Scene luminance that becomes display white; 0: automatic. linear: the 99th percentile of what
-  // is visible; the others: the largest luminance.
+  // is visible, or up to twice that where most of it would be white while some is much brighter;
+  // the others: the largest luminance.
   double white = 0;                 // >= 0
   double exposure_stops = 0;        // brightens (+) or darkens (-) by powers of two, -64..64
   double key = 0.18;                // reinhard: middle grey, 1e-6..1e6

@@ -199,5 +199,29 @@ TEST(Topology, DenormalCoordinatesAreScaledToo) {
   EXPECT_EQ(set->distortion.degenerate, 0u);
 }
 
+// Either of the two half-edges of an edge may be marked.
+TEST(Topology, SeamsAreNotLinked) {
+  const Mesh mesh(icosphere(2));
+  const Topology whole = topology_of(mesh);
+  std::vector<std::uint8_t> seams(mesh.indices.size(), 0);
+  for (std::uint32_t h = 0; h < seams.size(); h += 7) seams[h] = 1;
+  MeshView view = mesh.view();
+  view.seams = seams;
+  const auto cut = build_topology(view, {}, {});
+  ASSERT_TRUE(cut.ok()) << cut.status().message();
+  double length = 0;
+  for (std::uint32_t h = 0; h < seams.size(); ++h) {
+    const std::uint32_t o = whole.opposite[h];
+    const bool seam = seams[h] || seams[o];
+    EXPECT_EQ(cut->opposite[h], seam ? kNoIndex : o) << h;
+    if (seam && h < o) length += edge_length(*cut, h);
+  }
+  EXPECT_NEAR(cut->cut_length, length / cut->scale, 1e-9);
+  seams.pop_back();
+  view.seams = seams;
+  EXPECT_EQ(build_topology(view, {}, {}).status().message(),
+            "mesh: seams must be empty or 3 a triangle");
+}
+
 }  // namespace
 }  // namespace atlas::test

@@ -2,6 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <cstdio>
+
 #include "libatlas/pipeline/export_world.h"
 #include "libatlas/scene/reader.h"
 #include "tests/pipeline/lit_scene.h"
@@ -61,7 +64,7 @@ TEST(Advice, TexelsAsLongAsChartsAreNamed) {
   ExportReport report = report_of(16, 1, 16);
   ExportOptions options;
   EXPECT_TRUE(advice_on(report, options).empty());  // no texel size was given
-  options.texel_metres = 5;
+  report.packed_texel = options.texel_metres = 5;
   EXPECT_TRUE(holds(advice_on(report, options), "16 charts have 11 texels each on average, 5e+03"));
   EXPECT_TRUE(advice_on(report_of(2, 1, 16), options).empty());
 }
@@ -75,14 +78,14 @@ TEST(Advice, LimitsThemselvesNeedNone) {
   ExportOptions options;
   options.texel_metres = 0.005;
   report = report_of(100, 8, 1024);
-  report.scale = 0.5;
+  report.packed_texel = 0.01;
   EXPECT_TRUE(advice_on(report, options).empty());
 }
 
 // Texels that the pages could not hold are few because of the pages, not because of their length.
 TEST(Advice, FewTexelsOfFullPagesAreNotCalledTooLong) {
   ExportReport report = report_of(16, 1, 16);
-  report.scale = 0.2;
+  report.packed_texel = 0.025;
   ExportOptions options;
   options.texel_metres = 0.005;
   EXPECT_TRUE(holds(advice_on(report, options), "texels are 25 mm long"));
@@ -199,12 +202,47 @@ TEST(Advice, AGivenExposureCountsLikeAGivenWhite) {
 
 TEST(Advice, TexelsThatPagesCannotHoldAreNamed) {
   ExportReport report = report_of(100, 8, 1024);
-  report.scale = 0.2;
+  report.metres_per_unit = 0.01;
+  report.packed_texel = 2.5;
   EXPECT_TRUE(advice_on(report, {}).empty());  // no texel size was given
   ExportOptions options;
   options.texel_metres = 0.005;
   EXPECT_TRUE(holds(advice_on(report, options),
                     "texels are 25 mm long, not the 5 mm of ExportOptions::texel_metres"));
+}
+
+// A long chart is coarsened to fit its page, whatever the common scale is.
+TEST(Advice, TexelsAreAsLongAsTheUvsOfTheWorldSay) {
+  const TempFolder folder;
+  ExportOptions options;
+  options.target = folder / "world.obj";
+  options.atlases = 1;
+  options.atlas_size = 64;
+  options.texel_metres = 0.01;
+  options.threshold = 0;
+  options.simplify = false;
+  options.charts.min_fill = 0;
+  const auto report = export_world(lit_scene(grid(40, 20, 40, 20)), options, {}, {});
+  ASSERT_TRUE(report.ok()) << report.status().message();
+  double uv_area = 0;  // in texels
+  for (const PageReport& page : report->pages)
+    uv_area += report->uv_utilization * double(page.width) * double(page.height);
+  const double texel = std::sqrt(40 * 20 / uv_area);
+  EXPECT_GT(texel, 0.3);
+  EXPECT_NEAR(report->packed_texel, texel, 0.02 * texel);
+  ASSERT_FALSE(report->advice.empty());
+  double said = 0;
+  ASSERT_EQ(std::sscanf(report->advice[0].c_str(), "texels are %lf mm long", &said), 1)
+      << report->advice[0];
+  EXPECT_NEAR(said, 1e3 * texel, 20 * texel);
+}
+
+TEST(Advice, AScenePutInTheDarkIsNamed) {
+  ExportReport report = report_of(100, 8, 1024);
+  report.luminance.unlit_area = 3;
+  EXPECT_TRUE(holds(advice_on(report, {}), "no light is above 0"));
+  report.luminance.lit_area = 1e-6;
+  EXPECT_TRUE(advice_on(report, {}).empty());
 }
 
 TEST(Advice, AnExportSaysAndReportsIt) {

@@ -321,6 +321,8 @@ TEST(Export, RefusesOptionsOutOfRange) {
       {"ExportOptions::texel_metres", [](ExportOptions& o) { o.texel_metres = INFINITY; }},
       {"ExportOptions::threshold", [=](ExportOptions& o) { o.threshold = nan; }},
       {"ExportOptions::mip_levels", [](ExportOptions& o) { o.mip_levels = 6; }},
+      {"ExportOptions::plain_mip_levels", [](ExportOptions& o) { o.plain_mip_levels = 6; }},
+      {"ExportOptions::plain_mip_levels", [](ExportOptions& o) { o.plain_mip_levels = -1; }},
       {"ExportOptions::shifts", [](ExportOptions& o) { o.shifts = 0; }},
       {"ExportOptions::min_side", [](ExportOptions& o) { o.min_side = 257; }},
       {"ExportOptions::simplify_slip", [](ExportOptions& o) { o.simplify_slip = 0; }},

@@ -49,6 +49,18 @@ TEST(LayoutOptions, PagesWithImagesFollowTheExportsOptions) {
   }
 }
 
+TEST(LayoutOptions, PlainPagesHaveGuttersForTheMipLevelsAskedFor) {
+  ExportOptions options;
+  options.mip_levels = 5;  // is only for pages with images
+  for (const auto& [mip_levels, padding, alignment] :
+       {std::array{0, 1, 1}, std::array{1, 1, 2}, std::array{4, 8, 16}}) {
+    options.plain_mip_levels = mip_levels;
+    const LayoutOptions layout = layout_options(rectangles(3, {1, 1}), options, false);
+    EXPECT_EQ(layout.padding, padding);
+    EXPECT_EQ(layout.alignment, alignment);
+  }
+}
+
 TEST(LayoutOptions, PlainPagesAreFreeOnlyIfOneMayHaveAnyShape) {
   ExportOptions options;
   const auto layout = [&](std::uint32_t pages, bool square) {

@@ -169,6 +169,7 @@ TEST(ReportJson, FiguresOfLightAreInTheirPlaces) {
   LuminanceStatistics& light = r.luminance;
   Fidelity& f = r.fidelity;
   expect_in_place(r, {{"/textures/texel", &r.texel},
+                      {"/textures/packed_texel", &r.packed_texel},
                       {"/textures/final_texels", &r.final_texels},
                       {"/textures/full_texels", &r.full_texels},
                       {"/textures/halved_charts", &r.halved_charts},
@@ -181,7 +182,10 @@ TEST(ReportJson, FiguresOfLightAreInTheirPlaces) {
                       {"/textures/rms_error", &r.downsizing_rms},
                       {"/textures/max_error", &r.downsizing_max},
                       {"/light/white", &r.exposure_white},
+                      {"/light/median", &light.median},
                       {"/light/percentile99", &light.percentile99},
+                      {"/light/percentile999", &light.percentile999},
+                      {"/light/seam_length", &r.light_seam_length},
                       {"/light/maximum", &light.maximum},
                       {"/light/mean", &light.mean},
                       {"/light/log_average", &light.log_average},

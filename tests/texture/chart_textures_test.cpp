@@ -130,6 +130,28 @@ TEST(ChartTextures, HalveARampAsOftenAsItsSlopeAllows) {
   }
 }
 
+// Half of the sheet is even below white, and the light of the other half varies far above it.
+TEST(ChartTextures, KeepLightAboveWhiteIfPagesHoldIt) {
+  const LitShape shape = make_sheet({1, 1, 64, 64}, [](double u, double v) {
+    const auto lit =
+        static_cast<float>(u < 0.5 ? 2 : 50 + 40 * std::sin(60 * u) * std::cos(50 * v));
+    return Vec3f{lit, lit, lit};
+  });
+  TextureOptions o = options(1.0 / 256);
+  const ChartTexture clipped = size_textures(shape, o).charts[0];
+  EXPECT_EQ(clipped.width, 16) << "all of it is white";
+  o.brightest = 90;
+  const ChartTexture kept = size_textures(shape, o).charts[0];
+  EXPECT_GE(kept.width, 128);
+  EXPECT_LE(kept.max_error, 2 * o.threshold + 1e-6);
+  // What is nowhere above white is sized as without it.
+  const LitShape dim = make_sheet({1, 1, 64, 64}, [](double u, double) { return shown(u / 2); });
+  o.brightest = 0;
+  const ChartTexture without = size_textures(dim, o).charts[0];
+  o.brightest = 90;
+  EXPECT_EQ(size_textures(dim, o).charts[0].width, without.width);
+}
+
 TEST(ChartTextures, SayWhatTheirErrorCovers) {
   const auto ramp = [](double u, double) { return shown(u); };
   LitShape shape = make_sheet({1, 1, 30, 30}, ramp);

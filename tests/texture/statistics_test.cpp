@@ -52,6 +52,8 @@ TEST(Statistics, AreWeightedByArea) {
   EXPECT_NEAR(s.log_average, std::pow(4.0, 0.25), 0.001);
   EXPECT_NEAR(s.maximum, 4, 1e-5);
   EXPECT_NEAR(s.percentile99, 4, 1e-5);
+  EXPECT_NEAR(s.percentile999, 4, 1e-5);
+  EXPECT_NEAR(s.median, 1, 1e-5);
   EXPECT_FALSE(s.seen);  // sheets in one plane enclose no space
   EXPECT_EQ(s.not_finite, 0u);
 }

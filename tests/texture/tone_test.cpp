@@ -55,6 +55,25 @@ TEST(ToneMapping, RisesFromBlackToWhite) {
   }
 }
 
+// Where most of the surface is evenly lit and a lamp covers less than a hundredth, the 99th
+// percentile would show all of it white.
+TEST(ToneMapping, AMeasuredWhiteLeavesRoomAboveEvenLight) {
+  const auto white = [](double median, double percentile99, double percentile999) {
+    LuminanceStatistics s = statistics(1);
+    s.median = median;
+    s.percentile99 = percentile99;
+    s.percentile999 = percentile999;
+    const auto tone = make_tone_mapping({}, s);
+    EXPECT_TRUE(tone.ok());
+    return 1.0 / double(tone->scale);
+  };
+  EXPECT_NEAR(white(10, 10, 490), 20, 1e-4);  // a lamp
+  EXPECT_NEAR(white(10, 10, 16), 16, 1e-4);   // a weaker one
+  EXPECT_NEAR(white(10, 10, 14), 10, 1e-4);   // hardly brighter
+  EXPECT_NEAR(white(7, 10, 490), 10, 1e-4);   // shadows remain visible
+  EXPECT_NEAR(white(8.5, 10, 490), 20, 1e-4);
+}
+
 TEST(ToneMapping, FollowsThePublishedCurves) {
   // Reinhard et al. 2002, eq. 2 and 4.
   const ToneMapping reinhard = mapping(ToneOperator::reinhard, 1);

@@ -188,6 +188,7 @@ class Linker {
   }
 
   bool may_link(std::uint32_t g, std::uint32_t h) const {
+    if (!mesh_.seams.empty() && (mesh_.seams[g] || mesh_.seams[h])) return false;
     const std::uint32_t s = g / 3, t = h / 3;
     if (options_.cut_at_materials && !mesh_.materials.empty() &&
         mesh_.materials[s] != mesh_.materials[t]) {

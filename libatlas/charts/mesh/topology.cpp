@@ -3,15 +3,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
-#include <cstring>
-#include <limits>
+#include <utility>
 
 #include "libatlas/charts/mesh/links.h"
 #include "libatlas/charts/mesh/noise.h"
+#include "libatlas/charts/mesh/weld.h"
 #include "libatlas/core/clock.h"
-#include "libatlas/core/drop_rounding.h"
 #include "libatlas/core/glm_bridge.h"
 #include "libatlas/core/is_finite.h"
 #include "libatlas/core/parallel.h"
@@ -47,6 +45,9 @@ Status check_input(const MeshView& mesh) {
   if (!mesh.materials.empty() && mesh.materials.size() != n / 3) {
     return {ErrorCode::bad_input, "mesh: materials must be empty or 1 a triangle"};
   }
+  if (!mesh.seams.empty() && mesh.seams.size() != n) {
+    return {ErrorCode::bad_input, "mesh: seams must be empty or 3 a triangle"};
+  }
   if (!mesh.density.empty() && mesh.density.size() != n / 3) {
     return {ErrorCode::bad_input, "mesh: densities must be empty or 1 a triangle"};
   }
@@ -57,13 +58,6 @@ Status check_input(const MeshView& mesh) {
         fmt::format("triangle {}: density {} (must be above 0 and finite)", t, mesh.density[t])};
   }
   return {};
-}
-
-// One per vertex: whether any triangle uses it.
-std::vector<std::uint8_t> used_vertices(const MeshView& mesh) {
-  std::vector<std::uint8_t> used(mesh.positions.size(), 0);
-  for (const std::uint32_t v : mesh.indices) used[v] = 1;
-  return used;
 }
 
 Status check_positions(const MeshView& mesh, const std::vector<std::uint8_t>& used) {
@@ -77,54 +71,14 @@ Status check_positions(const MeshView& mesh, const std::vector<std::uint8_t>& us
                       (at - mesh.indices.begin()) / 3, *at)};
 }
 
-// Returns the power of two that scales the largest extent of the used vertices into [1, 2).
-double unit_scale(const MeshView& mesh, const std::vector<std::uint8_t>& used) {
-  glm::vec3 low(std::numeric_limits<float>::max()), high(-low);
-  for (std::size_t v = 0; v < used.size(); ++v) {
-    if (!used[v]) continue;
-    const glm::vec3 p = to_glm(mesh.positions[v]);
-    low = glm::min(low, p);
-    high = glm::max(high, p);
-  }
-  const glm::dvec3 extent = glm::dvec3(high) - glm::dvec3(low);
-  const double size = std::max({extent.x, extent.y, extent.z});
-  return size > 0 ? std::ldexp(1.0, -std::ilogb(size)) : 1.0;
-}
-
-std::uint64_t hash_position(const std::uint32_t (&key)[3]) {
-  std::uint64_t h = key[0] * 0x9e3779b97f4a7c15ull;
-  h = (h ^ (h >> 32) ^ key[1]) * 0xd6e8feb86659fd93ull;
-  h = (h ^ (h >> 32) ^ key[2]) * 0xd6e8feb86659fd93ull;
-  return h ^ (h >> 32);
-}
-
-// Fills points, source_vertex and corner_vertex. Vertices are numbered in input order.
-void weld(const MeshView& mesh, const std::vector<std::uint8_t>& used, Topology& topology) {
-  const std::size_t n = mesh.positions.size();
-  const double size = 1 / topology.scale;
-  const std::size_t capacity = std::bit_ceil(std::max<std::size_t>(16, 2 * n));
-  std::vector<std::uint32_t> table(capacity, kNoIndex), id(n, kNoIndex);
-  for (std::uint32_t v = 0; v < n; ++v) {
-    if (!used[v]) continue;
-    const Vec3f& at = mesh.positions[v];
-    const Vec3f p{drop_rounding(at.x, size), drop_rounding(at.y, size), drop_rounding(at.z, size)};
-    std::uint32_t key[3];
-    std::memcpy(key, &p, sizeof key);
-    std::size_t slot = hash_position(key) & (capacity - 1);
-    for (;; slot = (slot + 1) & (capacity - 1)) {
-      if (table[slot] == kNoIndex) {
-        table[slot] = static_cast<std::uint32_t>(topology.source_vertex.size());
-        topology.source_vertex.push_back(v);
-        topology.points.push_back(p);
-        break;
-      }
-      if (topology.points[table[slot]] == p) break;
-    }
-    id[v] = table[slot];
-  }
+// Fills scale, points, source_vertex and corner_vertex.
+void take_vertices(const MeshView& mesh, WeldedVertices welded, Topology& topology) {
+  topology.scale = welded.scale;
+  topology.points = std::move(welded.points);
+  topology.source_vertex = std::move(welded.source);
   topology.corner_vertex.resize(mesh.indices.size());
   for (std::size_t i = 0; i < mesh.indices.size(); ++i) {
-    topology.corner_vertex[i] = id[mesh.indices[i]];
+    topology.corner_vertex[i] = welded.place[mesh.indices[i]];
   }
   // In double, since the scale of a mesh of denormal numbers is beyond float.
   const double scale = topology.scale;
@@ -313,10 +267,9 @@ Result<Topology> build_topology(const MeshView& mesh, const TopologyOptions& opt
   if (Status status = check_input(mesh); !status.ok()) return status;
   Topology topology;
   {
-    const std::vector<std::uint8_t> used = used_vertices(mesh);
+    const std::vector<std::uint8_t> used = used_vertices(mesh.indices, mesh.positions.size());
     if (Status status = check_positions(mesh, used); !status.ok()) return status;
-    topology.scale = unit_scale(mesh, used);
-    weld(mesh, used, topology);
+    take_vertices(mesh, weld_vertices(mesh.positions, used), topology);
   }
   measure_triangles(topology);
   if (context.cancelled()) return Status::cancelled();

@@ -77,7 +77,8 @@ inline double edge_length(const Topology& topology, std::uint32_t half_edge) {
   return std::sqrt(x * x + y * y + z * z);
 }
 
-// Where triangles that share an edge are not linked although they could be.
+// Where triangles that share an edge are not linked although they could be, besides
+// MeshView::seams.
 struct TopologyOptions {
   bool cut_at_materials = true;  // where MeshView::materials differ
   bool cut_at_uv_seams = false;  // where the corners' texcoords differ

@@ -195,6 +195,14 @@ TEST_F(ExportFlags, TheReportShowsThem) {
         "f 1 2 3 4\nusemtl b\nf 2 5 6 3\n");
   EXPECT_EQ(report("{0}/two.obj -o {0}/t.obj -q")["charts"]["count"], 2);
   EXPECT_EQ(report("{0}/two.obj -o {0}/t.obj -q --across-materials")["charts"]["count"], 1);
+  // Two walls with vertices of their own, lit differently.
+  write("corner.obj",
+        "v 0 0 0 1 1 1\nv 1 0 0 1 1 1\nv 1 1 0 1 1 1\nv 0 1 0 1 1 1\nv 1 0 0 .2 .2 .2\n"
+        "v 1 0 1 .2 .2 .2\nv 1 1 1 .2 .2 .2\nv 1 1 0 .2 .2 .2\nf 1 2 3 4\nf 5 6 7 8\n");
+  const std::string corner = "{0}/corner.obj -o {0}/t.obj -q --texel 1cm";
+  EXPECT_EQ(report(corner)["charts"]["count"], 2);
+  EXPECT_EQ(report(corner)["light"]["seam_length"], 1);
+  EXPECT_EQ(report(corner + " --across-light")["charts"]["count"], 1);
 }
 
 // A texture of 16 texels or more a unit asks for finer texels than 50 cm.

@@ -1,0 +1,72 @@
+#include "libatlas/charts/mesh/weld.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstring>
+#include <limits>
+
+#include "libatlas/core/drop_rounding.h"
+#include "libatlas/core/glm_bridge.h"
+
+namespace atlas {
+namespace {
+
+double unit_scale(std::span<const Vec3f> positions, std::span<const std::uint8_t> used) {
+  glm::vec3 low(std::numeric_limits<float>::max()), high(-low);
+  for (std::size_t v = 0; v < used.size(); ++v) {
+    if (!used[v]) continue;
+    const glm::vec3 p = to_glm(positions[v]);
+    low = glm::min(low, p);
+    high = glm::max(high, p);
+  }
+  const glm::dvec3 extent = glm::dvec3(high) - glm::dvec3(low);
+  const double size = std::max({extent.x, extent.y, extent.z});
+  return size > 0 ? std::ldexp(1.0, -std::ilogb(size)) : 1.0;
+}
+
+std::uint64_t hash_position(const std::uint32_t (&key)[3]) {
+  std::uint64_t h = key[0] * 0x9e3779b97f4a7c15ull;
+  h = (h ^ (h >> 32) ^ key[1]) * 0xd6e8feb86659fd93ull;
+  h = (h ^ (h >> 32) ^ key[2]) * 0xd6e8feb86659fd93ull;
+  return h ^ (h >> 32);
+}
+
+}  // namespace
+
+std::vector<std::uint8_t> used_vertices(std::span<const std::uint32_t> indices, std::size_t count) {
+  std::vector<std::uint8_t> used(count, 0);
+  for (const std::uint32_t v : indices) used[v] = 1;
+  return used;
+}
+
+WeldedVertices weld_vertices(std::span<const Vec3f> positions, std::span<const std::uint8_t> used) {
+  WeldedVertices welded;
+  welded.scale = unit_scale(positions, used);
+  const double size = 1 / welded.scale;
+  const std::size_t n = positions.size();
+  const std::size_t capacity = std::bit_ceil(std::max<std::size_t>(16, 2 * n));
+  std::vector<std::uint32_t> table(capacity, kNoIndex);
+  welded.place.assign(n, kNoIndex);
+  for (std::uint32_t v = 0; v < n; ++v) {
+    if (!used[v]) continue;
+    const Vec3f& at = positions[v];
+    const Vec3f p{drop_rounding(at.x, size), drop_rounding(at.y, size), drop_rounding(at.z, size)};
+    std::uint32_t key[3];
+    std::memcpy(key, &p, sizeof key);
+    std::size_t slot = hash_position(key) & (capacity - 1);
+    for (;; slot = (slot + 1) & (capacity - 1)) {
+      if (table[slot] == kNoIndex) {
+        table[slot] = static_cast<std::uint32_t>(welded.source.size());
+        welded.source.push_back(v);
+        welded.points.push_back(p);
+        break;
+      }
+      if (welded.points[table[slot]] == p) break;
+    }
+    welded.place[v] = table[slot];
+  }
+  return welded;
+}
+
+}  // namespace atlas

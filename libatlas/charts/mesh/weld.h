@@ -1,0 +1,26 @@
+// Internal: welds the vertices of a mesh that lie at one place.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "libatlas/charts/mesh/topology.h"
+
+namespace atlas {
+
+struct WeldedVertices {
+  double scale = 1;                   // the power of two that scales the largest extent into [1, 2)
+  std::vector<Vec3f> points;          // one per place, in input units
+  std::vector<std::uint32_t> source;  // one per place: the first input vertex that lies there
+  std::vector<std::uint32_t> place;   // one per input vertex; kNoIndex if no triangle uses it
+};
+
+// Returns, for each of `count` vertices, whether any triangle uses it.
+std::vector<std::uint8_t> used_vertices(std::span<const std::uint32_t> indices, std::size_t count);
+
+// Welds vertices whose positions are bitwise equal once coordinates that are mere rounding have
+// become 0 (drop_rounding()). Places are numbered in input order. Takes linear time.
+WeldedVertices weld_vertices(std::span<const Vec3f> positions, std::span<const std::uint8_t> used);
+
+}  // namespace atlas

@@ -1,0 +1,234 @@
+#include "libatlas/pipeline/light_seams.h"
+
+#include <algorithm>
+#include <cmath>
+#include <span>
+#include <tuple>
+#include <unordered_map>
+
+#include "libatlas/charts/mesh/weld.h"
+#include "libatlas/core/disjoint_sets.h"
+#include "libatlas/core/glm_bridge.h"
+#include "libatlas/scene/triangle_area.h"
+
+namespace atlas {
+namespace {
+
+// See LightSeamOptions::texel.
+constexpr double kThinTexels = 4;
+
+// Where the light jumps along this share of the creases between two faces, the faces part along all
+// of them. Seams that end midway would leave slits in charts.
+constexpr double kSomeOfACrease = 0.25;
+
+// A half-edge, by the welded vertices that its edge connects.
+struct Side {
+  std::uint32_t low, high, half_edge;
+};
+
+// What is known of a half-edge at an edge that several triangles share.
+struct Bank {
+  bool upward;        // runs from the edge's lower vertex to the higher one
+  Vec3f light[2];     // display values at these
+  glm::dvec3 normal;  // of its triangle, unit length; 0 without area
+};
+
+// A half-edge that no other triangle of its edge continues smoothly.
+struct Crease {
+  std::uint32_t half_edge, other;  // another half-edge of the same edge
+  double length;
+  bool jumps;  // the light is another on all other triangles of the edge
+};
+
+double difference(const Vec3f& a, const Vec3f& b) {
+  return std::max({std::abs(a.x - b.x), std::abs(a.y - b.y), std::abs(a.z - b.z)});
+}
+
+class LightSeamFinder {
+ public:
+  LightSeamFinder(const LuminanceSampler& sampler, const ToneMapping& tone,
+                  const LightSeamOptions& options)
+      : scene_(sampler.scene()),
+        sampler_(sampler),
+        tone_(tone),
+        options_(options),
+        least_cosine_(std::cos(options.crease_degrees * M_PI / 180)),
+        faces_(scene_.positions.size()) {}
+
+  LightSeams run(const Context& context) {
+    weld();
+    gather_sides();
+    if (sides_.empty() || context.cancelled()) return {};
+    find_creases();
+    if (context.cancelled()) return {};
+    if (std::none_of(creases_.begin(), creases_.end(), [](const Crease& c) { return c.jumps; }))
+      return {};
+    join_faces();
+    keep_jumping_creases();
+    keep_creases_of_wide_faces();
+    return result();
+  }
+
+ private:
+  void weld() {
+    const std::vector<std::uint8_t> used = used_vertices(scene_.indices, scene_.positions.size());
+    welded_ = weld_vertices(scene_.positions, used);
+    differs_.assign(welded_.points.size(), 0);
+    for (std::size_t v = 0; v < used.size(); ++v) {
+      if (!used[v]) continue;
+      const std::uint32_t at = welded_.place[v];
+      if (scene_.illumination[v] != scene_.illumination[welded_.source[at]]) differs_[at] = 1;
+    }
+  }
+
+  std::uint32_t place(std::uint32_t h) const { return welded_.place[scene_.indices[h]]; }
+  glm::dvec3 position(std::uint32_t h) const {
+    return to_dvec(scene_.positions[scene_.indices[h]]);
+  }
+
+  // Fills sides_ with the half-edges at one of whose ends vertices differ in light, sorted by edge.
+  void gather_sides() {
+    const auto corners = static_cast<std::uint32_t>(scene_.indices.size());
+    for (std::uint32_t h = 0; h < corners; ++h) {
+      const std::uint32_t a = place(h), b = place(next_half_edge(h));
+      if (a != b && (differs_[a] || differs_[b]))
+        sides_.push_back({std::min(a, b), std::max(a, b), h});
+    }
+    std::sort(sides_.begin(), sides_.end(), [](const Side& a, const Side& b) {
+      return std::tie(a.low, a.high, a.half_edge) < std::tie(b.low, b.high, b.half_edge);
+    });
+  }
+
+  void find_creases() {
+    std::vector<Bank> banks;
+    for (std::size_t i = 0, j = 0; i < sides_.size(); i = j) {
+      banks.clear();
+      for (;
+           j < sides_.size() && sides_[j].low == sides_[i].low && sides_[j].high == sides_[i].high;
+           ++j) {
+        banks.push_back(bank(sides_[j]));
+      }
+      for (std::size_t k = i; k < j && j - i > 1; ++k) judge(i, k - i, banks);
+    }
+  }
+
+  // Appends side first + k to the creases, or joins it to the face that continues it.
+  void judge(std::size_t first, std::size_t k, std::span<const Bank> banks) {
+    bool jumps = true;
+    const std::uint32_t h = sides_[first + k].half_edge;
+    for (std::size_t i = 0; i < banks.size(); ++i) {
+      if (i == k) continue;
+      if (smooth(banks[i], banks[k])) {
+        faces_.join(scene_.indices[h], scene_.indices[sides_[first + i].half_edge]);
+        return;
+      }
+      jumps = jumps && jump(banks[i], banks[k]) > options_.visible_jump;
+    }
+    const double length = glm::length(position(next_half_edge(h)) - position(h));
+    creases_.push_back({h, sides_[first + (k == 0)].half_edge, length, jumps});
+  }
+
+  Bank bank(const Side& side) const {
+    const std::uint32_t h = side.half_edge, t = h / 3;
+    const LuminanceSampler::Triangle triangle = sampler_.prepare(t, 0);
+    const auto light = [&](std::uint32_t corner) {
+      const float* e = triangle.illumination[corner % 3];
+      return tone_.display({e[0], e[1], e[2]});
+    };
+    const glm::dvec3 p = position(3 * t);
+    const glm::dvec3 cross = glm::cross(position(3 * t + 1) - p, position(3 * t + 2) - p);
+    const double twice = glm::length(cross);
+    const glm::dvec3 normal = twice > 0 ? cross / twice : glm::dvec3(0);
+    const Vec3f from = light(h), to = light(next_half_edge(h));
+    if (place(h) == side.low) return {true, {from, to}, normal};
+    return {false, {to, from}, normal};
+  }
+
+  bool smooth(const Bank& a, const Bank& b) const {
+    const double cosine = glm::dot(a.normal, b.normal);
+    return (a.upward != b.upward ? cosine : -cosine) > least_cosine_;
+  }
+
+  static double jump(const Bank& a, const Bank& b) {
+    return (difference(a.light[0], b.light[0]) + difference(a.light[1], b.light[1])) / 2;
+  }
+
+  // A face is what hangs together by vertices of the input, by vertices of one light, or by edges
+  // that are no creases.
+  void join_faces() {
+    for (std::size_t h = 0; h < scene_.indices.size(); h += 3) {
+      faces_.join(scene_.indices[h], scene_.indices[h + 1]);
+      faces_.join(scene_.indices[h], scene_.indices[h + 2]);
+    }
+    for (std::uint32_t v = 0; v < scene_.positions.size(); ++v) {
+      const std::uint32_t at = welded_.place[v];
+      if (at != kNoIndex && !differs_[at]) faces_.join(v, welded_.source[at]);
+    }
+  }
+
+  std::uint32_t face(std::uint32_t h) { return faces_.find(scene_.indices[h]); }
+
+  void keep_jumping_creases() {
+    struct Lengths {
+      double jumping = 0, all = 0;
+    };
+    std::unordered_map<std::uint64_t, Lengths> between;  // two faces
+    const auto key = [&](const Crease& c) {
+      const std::uint64_t a = face(c.half_edge), b = face(c.other);
+      return std::min(a, b) << 32 | std::max(a, b);
+    };
+    for (const Crease& c : creases_) {
+      Lengths& lengths = between[key(c)];
+      lengths.all += c.length;
+      lengths.jumping += c.jumps ? c.length : 0;
+    }
+    std::erase_if(creases_, [&](const Crease& c) {
+      if (face(c.half_edge) == face(c.other)) return !c.jumps;
+      const Lengths& lengths = between[key(c)];
+      return lengths.jumping < kSomeOfACrease * lengths.all;
+    });
+  }
+
+  void keep_creases_of_wide_faces() {
+    std::vector<double> area(scene_.positions.size(), 0), border(area);
+    for (std::uint32_t h = 0; h < scene_.indices.size(); h += 3)
+      area[face(h)] += triangle_area(scene_, h / 3);
+    for (const Crease& c : creases_) border[face(c.half_edge)] += c.length;
+    const auto thin = [&](std::uint32_t h) {
+      const std::uint32_t f = face(h);
+      return 2 * area[f] < kThinTexels * options_.texel * border[f];
+    };
+    std::erase_if(creases_, [&](const Crease& c) { return thin(c.half_edge) || thin(c.other); });
+  }
+
+  LightSeams result() const {
+    LightSeams seams;
+    if (creases_.empty()) return seams;
+    seams.edges.assign(scene_.indices.size(), 0);
+    for (const Crease& c : creases_) {
+      seams.edges[c.half_edge] = 1;
+      if (c.half_edge < c.other || !seams.edges[c.other]) seams.length += c.length;
+    }
+    return seams;
+  }
+
+  const Scene& scene_;
+  const LuminanceSampler& sampler_;
+  const ToneMapping& tone_;
+  const LightSeamOptions& options_;
+  double least_cosine_;
+  DisjointSets faces_;  // of vertices
+  WeldedVertices welded_;
+  std::vector<std::uint8_t> differs_;  // one per place: vertices there have different light
+  std::vector<Side> sides_;
+  std::vector<Crease> creases_;
+};
+
+}  // namespace
+
+LightSeams find_light_seams(const LuminanceSampler& sampler, const ToneMapping& tone,
+                            const LightSeamOptions& options, const Context& context) {
+  return LightSeamFinder(sampler, tone, options).run(context);
+}
+
+}  // namespace atlas
