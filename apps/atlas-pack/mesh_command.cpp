@@ -195,7 +195,6 @@ Result<FitResult> fit_charts(const PackCommand& c, std::span<const FitItem> item
     page = {page.width + 2 * border, page.height + 2 * border};
     if (!o.crop) page = {c.page_side, c.page_side};
     if (o.power_of_two) page = {round_up(page.width), round_up(page.height)};
-    if (o.square) page.width = page.height = std::max(page.width, page.height);
     whole += static_cast<double>(page.area());
   }
   if (whole > 0) fitted->utilization *= used / whole;

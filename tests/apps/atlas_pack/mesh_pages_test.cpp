@@ -7,11 +7,11 @@
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
-#include <map>
-#include <nlohmann/json.hpp>
 #include <numbers>
+#include <set>
 #include <sstream>
 #include <string>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -102,19 +102,35 @@ TEST_F(PackedPages, ChartsTurnByTheDirectionsAskedFor) {
   }
 }
 
+// Triangles that lie alike fill a page less well than those that may be turned.
+TEST_F(PackedPages, ChartsTurnInSomeOfTheDirectionsAskedFor) {
+  write_triangles();
+  for (const auto& [rotations, step] : {std::pair(1, 360), {2, 180}, {4, 90}}) {
+    const auto pages = packed(fmt::format("--page 256 --rotations {}", rotations));
+    ASSERT_EQ(pages.size(), 1u);
+    bool turned = false;  // by a single step
+    for (const auto& [a, b] : pages[0].first_edges) {
+      const double degrees = std::atan2(b.y - a.y, b.x - a.x) * 180 / std::numbers::pi;
+      EXPECT_NEAR(std::remainder(degrees, step), 0, 0.01) << rotations;
+      turned = turned || std::abs(std::remainder(degrees, 2 * step)) > 1;
+    }
+    EXPECT_EQ(turned, rotations > 1) << rotations;
+  }
+}
+
 TEST_F(PackedPages, EachCroppedPageEndsWhereItsChartsDo) {
   write_triangles();
-  for (const auto& [options, count] : {std::pair("--crop", 1u), {"--crop --pages 3", 3u}}) {
+  for (const auto& [options, count, border] :
+       {std::tuple("--crop", 1u, 0), {"--crop --pages 3", 3u, 0}, {"--crop --border 7", 1u, 7}}) {
     const auto pages = packed(std::string("--page 256 ") + options);
     ASSERT_EQ(pages.size(), count);
-    double smallest = 256;
     for (const Page& page : pages) {
-      EXPECT_GT(page.high.x, page.width - 1.01) << options;
-      EXPECT_GT(page.high.y, page.height - 1.01) << options;
+      EXPECT_NEAR(page.low.x, border + 0.5, 0.51) << options;
+      EXPECT_NEAR(page.low.y, border + 0.5, 0.51) << options;
+      EXPECT_NEAR(page.high.x, page.width - border - 0.5, 0.51) << options;
+      EXPECT_NEAR(page.high.y, page.height - border - 0.5, 0.51) << options;
       EXPECT_LE(std::max(page.width, page.height), 256) << options;
-      smallest = std::min({smallest, page.width, page.height});
     }
-    EXPECT_LT(smallest, 256) << options;
   }
   for (const Page& page : packed("--page 256 --pages 3")) {
     EXPECT_EQ(page.width, 256);
@@ -122,18 +138,50 @@ TEST_F(PackedPages, EachCroppedPageEndsWhereItsChartsDo) {
   }
 }
 
+// Only a single page of any shape is filled instead of holding the largest charts.
+TEST_F(PackedPages, CroppingLeavesChartsAsLargeAsTheyAre) {
+  const auto lengths = [&](const std::string& options) {
+    std::multiset<int> of_edges;
+    for (const Page& page : packed("--page 256 " + options))
+      for (const auto& [a, b] : page.first_edges)
+        of_edges.insert(int(std::lround(10 * std::hypot(b.x - a.x, b.y - a.y))));
+    return of_edges;
+  };
+  write_triangles();
+  EXPECT_EQ(lengths("--crop --pages 3"), lengths("--pages 3"));
+  // Three squares leave a quarter of a square page free, and less of a page of another shape.
+  std::string squares;
+  for (int k = 0; k < 3; ++k) {
+    for (const auto& [x, y] : {std::pair(0, 0), {1, 0}, {1, 1}, {0, 1}})
+      squares += fmt::format("v {0} {1} 0\nvt {0} {1}\n", 3 * k + x, y);
+    squares += "f -4/-4 -3/-3 -2/-2\nf -2/-2 -1/-1 -4/-4\n";
+  }
+  write("m.obj", squares);
+  EXPECT_NEAR(*lengths("").begin(), 1280, 5);
+  EXPECT_EQ(lengths("--crop --pot"), lengths(""));
+  EXPECT_EQ(lengths("--crop --square"), lengths(""));
+  EXPECT_LT(*lengths("--crop").rbegin(), 1270);
+}
+
 // The border is kept free on all sides, and the page is the smallest power of two around it.
 TEST_F(PackedPages, PowersOfTwoIncludeTheBorder) {
-  write_strip(0);
   for (const int border : {0, 9, 40}) {
-    const auto pages =
-        packed(fmt::format("--page 256 --crop --pot --rotations 1 --border {}", border));
+    const std::string options =
+        fmt::format("--page 256 --crop --pot --rotations 1 --border {}", border);
+    // The strip is a tenth as high as wide.
+    const double side = (256 - 2 * border) / 10.0 + 2 * border;
+    const double least = std::bit_ceil(unsigned(std::ceil(side - 1e-3)));
+    write_strip(90);
+    const auto upright = packed(options);
+    ASSERT_EQ(upright.size(), 1u);
+    EXPECT_EQ(upright[0].width, least) << border;
+    EXPECT_EQ(upright[0].height, 256);
+    write_strip(0);
+    const auto pages = packed(options);
     ASSERT_EQ(pages.size(), 1u);
     const Page& page = pages[0];
     EXPECT_EQ(page.width, 256);
-    // The strip is a tenth as high as wide.
-    const double height = (256 - 2 * border) / 10.0 + 2 * border;
-    EXPECT_EQ(page.height, double(std::bit_ceil(unsigned(std::ceil(height - 1e-3))))) << border;
+    EXPECT_EQ(page.height, least) << border;
     EXPECT_GE(std::min(page.low.x, page.low.y), border - 1e-3);
     EXPECT_LE(page.high.x, 256 - border + 1e-3);
     EXPECT_NEAR(page.high.x - page.low.x, 256 - 2 * border, 1) << border;
