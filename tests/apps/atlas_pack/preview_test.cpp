@@ -68,6 +68,9 @@ TEST_F(AtlasPack, ThePreviewIsNoPage) {
     EXPECT_NE(r.output.find("would overwrite"), std::string::npos) << r.output;
     EXPECT_EQ(files(), 1) << arguments;
   }
+  // What can be told at once is told before the images are read.
+  const RunResult early = run("images absent -o s --preview s.png");
+  EXPECT_NE(early.output.find("s.png: would overwrite"), std::string::npos) << early.output;
   EXPECT_EQ(run("images in -o s --page 20 --preview s-2.png").exit_code, 0);
   EXPECT_EQ(read_image8(dir_ / "s-1.png")->width, 20);
   EXPECT_EQ(read_image8(dir_ / "s-2.png")->width, 20 + 16 + 20);
