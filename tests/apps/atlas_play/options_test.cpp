@@ -171,6 +171,7 @@ TEST(PlayOptions, OfRunning) {
   EXPECT_FALSE(good({"--plan"}).in_window());
   EXPECT_EQ(refused({"--plan", "--headless", "--close-after", "7"}), 2);
   EXPECT_EQ(good({"--plan", "--frames", "7"}).play.frames, 7);
+  EXPECT_EQ(refused({"--plan", "--quiet"}), 2) << "it would tell nothing";
 }
 
 TEST(PlayOptions, OfTheBench) {
@@ -249,9 +250,16 @@ TEST(PlayOptions, TheCameraIsTwoPoints) {
   ASSERT_TRUE(camera.ok());
   expect_near(camera->eye, {1, 2, 3}, "eye");
   expect_near(camera->target, {0, 0.5, -600}, "target");
+  EXPECT_EQ(camera->fov_degrees, 60);
+  CommandLine wide = good({"--fov", "100", "--camera", "101,202,303;0,0,0"});
+  EXPECT_EQ(app::camera_of(wide, scene)->fov_degrees, 100);
+  wide.camera.clear();
+  EXPECT_EQ(app::camera_of(wide, scene)->fov_degrees, 100);
   // The eye is two units before the box and four before its far side.
-  EXPECT_NEAR(camera->near_plane, 2, 0.1);
-  EXPECT_NEAR(camera->far_plane, 4, 0.2);
+  EXPECT_GT(camera->near_plane, 0.5);
+  EXPECT_LE(camera->near_plane, 2);
+  EXPECT_GE(camera->far_plane, 4);
+  EXPECT_LT(camera->far_plane, 10);
   for (const char* wrong :
        {"1,2,3;1,2,3", "1,2,3;4,5", "1,2,3,4,5,6", "1;2,3,4,5,6", "1,2,3;4,5,6;", "1,2,3;4,5,inf",
         "1,2,3;4,5,nan", ",2,3;4,5,6", "1,2,3;4,5,6 7"}) {

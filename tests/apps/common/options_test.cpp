@@ -24,6 +24,8 @@ TEST(Checks, RangesIncludeTheirEnds) {
 TEST(Checks, NumbersBeyondAnUnnamedEndAreToldIt) {
   EXPECT_EQ(complaint(not_negative(), "0"), "");
   EXPECT_EQ(complaint(not_negative(), "1e30"), "");
+  for (const char* wrong : {"", "nan", "inf"})
+    EXPECT_EQ(complaint(not_negative(), wrong), "'" + std::string(wrong) + "' must be 0 or more");
   EXPECT_EQ(complaint(not_negative(), "2e30"), "'2e30' must be 0 or more, and at most 1e+30");
   EXPECT_EQ(complaint(not_negative(), "-1e-9"), "'-1e-9' must be 0 or more");
   EXPECT_EQ(complaint(positive(), "0"), "'0' must be above 0");

@@ -13,6 +13,7 @@ TEST(PrintedTexts, HoldNoControlCharacters) {
                       "e"),
             "a?[31mb?c?d?e");
   EXPECT_EQ(printable(std::string("a\0b", 3)), "a?b");
+  EXPECT_EQ(printable("\x1f ~"), "? ~");
   EXPECT_EQ(printable("a\nb\n"), "a\nb\n");
   // U+0080 to U+009F control terminals, too; U+00A0 and letters stay.
   EXPECT_EQ(printable("\xc2\x80 \xc2\x9b \xc2\x9f"), "? ? ?");
