@@ -255,11 +255,12 @@ TEST(PlayOptions, TheCameraIsTwoPoints) {
   EXPECT_EQ(app::camera_of(wide, scene)->fov_degrees, 100);
   wide.camera.clear();
   EXPECT_EQ(app::camera_of(wide, scene)->fov_degrees, 100);
-  // The eye is two units before the box and four before its far side.
-  EXPECT_GT(camera->near_plane, 0.5);
-  EXPECT_LE(camera->near_plane, 2);
-  EXPECT_GE(camera->far_plane, 4);
-  EXPECT_LT(camera->far_plane, 10);
+  // From far away, the planes enclose the scene closely.
+  line.camera = "100,200,1300;100,200,300";
+  const Result<Camera> far = app::camera_of(line, scene);
+  EXPECT_GT(far->near_plane, 500);
+  EXPECT_LE(far->near_plane, 999);
+  EXPECT_GE(far->far_plane, 1001);
   for (const char* wrong :
        {"1,2,3;1,2,3", "1,2,3;4,5", "1,2,3,4,5,6", "1;2,3,4,5,6", "1,2,3;4,5,6;", "1,2,3;4,5,inf",
         "1,2,3;4,5,nan", ",2,3;4,5,6", "1,2,3;4,5,6 7"}) {
