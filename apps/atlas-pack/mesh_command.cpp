@@ -159,7 +159,7 @@ Result<FitResult> fit_charts(const PackCommand& c, std::span<const FitItem> item
   FitOptions fit;
   fit.pages = c.pages;
   fit.page_size = c.page_side - 2 * border;
-  fit.power_of_two = o.power_of_two && border == 0;
+  fit.power_of_two = false;  // a fit would not crop such pages; their sides are rounded up below
   fit.square = o.square;
   fit.free_aspect = o.crop && c.pages == 1 && !o.power_of_two && !o.square;
   fit.padding = std::int32_t(padding);
@@ -193,9 +193,8 @@ Result<FitResult> fit_charts(const PackCommand& c, std::span<const FitItem> item
   for (Extent& page : fitted->pages) {
     used += static_cast<double>(page.area());
     page = {page.width + 2 * border, page.height + 2 * border};
-    if (!o.crop && !fit.power_of_two) page = {c.page_side, c.page_side};
-    if (o.power_of_two && !fit.power_of_two) page = {round_up(page.width), round_up(page.height)};
-    if (o.square) page.width = page.height = std::max(page.width, page.height);
+    if (!o.crop) page = {c.page_side, c.page_side};
+    if (o.power_of_two) page = {round_up(page.width), round_up(page.height)};
     whole += static_cast<double>(page.area());
   }
   if (whole > 0) fitted->utilization *= used / whole;
@@ -247,8 +246,6 @@ Result<PackedAtlas> run_mesh(const PackCommand& c, const Context& context) {
   }
   Result<FitResult> fitted = fit_charts(c, items, shapes, context);
   if (!fitted.ok()) return fitted.status();
-  // A cancelled search returns what it has found so far.
-  if (context.cancelled()) return Status::cancelled();
   const RepackedMesh mesh = repack(scene, charts, *fitted);
   PackedAtlas atlas = describe(*fitted);
   AtomicFiles files;  // so that mesh, materials and preview appear together

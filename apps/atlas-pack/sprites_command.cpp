@@ -213,6 +213,8 @@ Status write_files(const PackCommand& c, const std::vector<Sprite>& sprites, Pac
         blit(sprites[i], atlas.items[i].at, c.extrude, page);
     const fs::path image = c.output.parent_path() / atlas.images[p];
     const fs::path data = c.output.parent_path() / data_of_page(atlas.images[p]);
+    // Only now is it known how many pages there are, whose names the preview must not have.
+    if (Status s = check_output(image, {c.preview}); !s.ok()) return s;
     for (const fs::path& file : {image, data})
       if (Status s = check_links(c, file); !s.ok()) return s;
     if (Status s = write_png(files.path_for(image), page, {}); !s.ok())

@@ -220,8 +220,10 @@ void add_bench_options(CLI::App& app, CommandLine& l) {
   app.add_flag("--no-errors", l.no_errors, "measure times only")->needs(bench);
 }
 
-// Returns a complaint about options for the other way of running, which would change nothing.
-std::string about_window(const CLI::App& app, const CommandLine& l) {
+// Returns a complaint about options that would change nothing, such as those for the other way of
+// running.
+std::string about_running(const CLI::App& app, const CommandLine& l) {
+  if (l.plan && l.quiet) return "--plan with --quiet tells nothing (leave one out)";
   if (l.in_window() && app.count("--frames") > 0)
     return "--frames is for --headless (give that too, or --close-after for a window)";
   if (l.headless && app.count("--close-after") > 0)
@@ -298,7 +300,7 @@ Parsed parse_command_line(int argc, char** argv) {
     parsed.exit_code = code;
     return parsed;
   }
-  if (const std::string why = about_window(app, l); !why.empty()) {
+  if (const std::string why = about_running(app, l); !why.empty()) {
     print_error("atlas-play", why);
     parsed.exit_code = 2;
     return parsed;

@@ -104,8 +104,7 @@ Status play(CommandLine& line, Terminal& terminal, const Context& context) {
   if (!renderer.ok()) return renderer.status();
   terminal.line(fmt::format("{} triangles, OpenGL {} on {}", scene->triangle_count(),
                             gl->info().version, gl->info().renderer));
-  if (line.plan || !line.quiet)
-    for (const std::string& text : renderer->plan()) terminal.line(text);
+  for (const std::string& text : renderer->plan()) terminal.line(text);
   if (line.plan) return {};
   if (!line.bench.empty()) {
     Result<BenchResult> measured = measure(line, *gl, *renderer, context);

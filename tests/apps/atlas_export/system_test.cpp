@@ -172,6 +172,19 @@ TEST_F(System, PagesOfAnEarlierExportAreNamed) {
   EXPECT_TRUE(fs::exists(folder_ / "w_2.png"));
 }
 
+TEST_F(System, OnlyPagesThatFollowOnThoseOfTheWorldAreOfAnEarlierExport) {
+  folder_.write("w_1.png", "old");
+  folder_.write("w_3.png", "none of a row");
+  const std::string one = to("w_1.png") + ": of an earlier export with more pages, no part of";
+  EXPECT_NE(run(fmt::format("{} -o {}", scene_, to("w.wrl"))).output.find(one), std::string::npos);
+  // These worlds have no images beside them.
+  folder_.write("w_0.png", "old");
+  for (const char* arguments : {"w.glb", "w.obj --charts-only", "w.glb --keep-scene --charts-only"})
+    EXPECT_EQ(run(fmt::format("{} -o {}", scene_, to(arguments))).output.find("earlier"),
+              std::string::npos)
+        << arguments;
+}
+
 TEST_F(System, ScenesTooSmallForFloats) {
   folder_.write("tiny.obj", "v 0 0 0\nv 1e-39 0 0\nv 0 1e-39 0\nf 1 2 3\n");
   const RunResult r = run(fmt::format("{} -o {} 2>&1", to("tiny.obj"), to("w.glb")));

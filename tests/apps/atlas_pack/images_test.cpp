@@ -7,6 +7,7 @@
 #include <set>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "libatlas/image/image_io.h"
 #include "tests/apps/atlas_pack/run_pack.h"
@@ -107,6 +108,44 @@ TEST_F(AtlasPack, EachPageNamesTheDataOfAllOthers) {
   }
   ASSERT_EQ(run("images in -o one --page 128x128").exit_code, 0);
   EXPECT_FALSE(nlohmann::json::parse(read("one.json"))["meta"].contains("related_multi_packs"));
+}
+
+// Folders list their files in any order.
+TEST_F(AtlasPack, SpritesAreInTheOrderOfTheirNames) {
+  fs::create_directories(dir_ / "in/f");
+  std::set<std::string> names;
+  for (int i = 0; i < 24; ++i) {
+    const std::string name = fmt::format("{}{:02}.png", i % 3 ? "" : "f/", 7 * i % 24);
+    names.insert(name);
+    const auto level = static_cast<std::uint8_t>(10 * (i % 4));
+    ASSERT_TRUE(atlas::write_png(dir_ / "in" / name, atlas::Image8(4, 4, 3, level), {}).ok());
+  }
+  ASSERT_EQ(run("images in -o s --page 64 --data array").exit_code, 0);
+  const auto data = nlohmann::json::parse(read("s.json"));
+  std::vector<std::string> listed;
+  for (const auto& frame : data["frames"]) listed.push_back(frame["filename"]);
+  EXPECT_EQ(listed, std::vector<std::string>(names.begin(), names.end()));
+}
+
+// The data of each page tell the size of its own image.
+TEST_F(AtlasPack, EachPageTellsItsOwnSize) {
+  fs::create_directories(dir_ / "in");
+  int level = 0;
+  for (const auto& [width, height] : {std::pair(40, 40), {30, 35}, {25, 22}})
+    ASSERT_TRUE(atlas::write_png(dir_ / fmt::format("in/{}.png", width),
+                                 atlas::Image8(width, height, 3, std::uint8_t(++level)), {})
+                    .ok());
+  ASSERT_EQ(run("images in -o s --page 40x40 --crop").exit_code, 0);
+  std::set<int> widths;
+  for (int page = 0; page < 3; ++page) {
+    const auto size = nlohmann::json::parse(read(fmt::format("s-{}.json", page)))["meta"]["size"];
+    const auto image = atlas::read_image8(dir_ / fmt::format("s-{}.png", page));
+    ASSERT_TRUE(image.ok());
+    EXPECT_EQ(size["w"], image->width);
+    EXPECT_EQ(size["h"], image->height);
+    widths.insert(image->width);
+  }
+  EXPECT_EQ(widths, (std::set<int>{25, 30, 40}));
 }
 
 TEST_F(AtlasPack, PagesOfAnEarlierRunAreNamed) {

@@ -1,15 +1,9 @@
 // Tests atlas-play as users run it: every failure ends in one clear line and exit code 1.
-#include <fcntl.h>
 #include <fmt/format.h>
 #include <gtest/gtest.h>
-#include <signal.h>
-#include <sys/wait.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <chrono>
-#include <cstdio>
-#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
@@ -18,55 +12,11 @@
 #include <thread>
 #include <utility>
 
+#include "tests/apps/atlas_play/run_play.h"
 #include "tests/support/xvfb.h"
 
+namespace atlas::test {
 namespace {
-
-namespace fs = std::filesystem;
-
-struct RunResult {
-  int exit_code = -1;
-  std::string output, errors;
-};
-
-std::string text_of(const fs::path& path) {
-  std::ifstream file(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(file), {}};
-}
-
-class AtlasPlay : public testing::Test {
- protected:
-  void SetUp() override {
-    const auto* info = testing::UnitTest::GetInstance()->current_test_info();
-    dir_ = fs::temp_directory_path() / fmt::format("atlas_play_{}_{}", info->name(), ::getpid());
-    fs::create_directories(dir_);
-    std::ofstream(dir_ / "roof.obj") << "v -1 1 -1\nv 1 1 -1\nv 0 1 1\nv -2 0 -2\nv 2 0 -2\n"
-                                        "v 0 0 3\nf 3 2 1\nf 6 5 4\n";
-    std::ofstream(dir_ / "points.obj") << "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
-  }
-  void TearDown() override { fs::remove_all(dir_); }
-
-  // `environment` is as for env(1). Leak checks are disabled because graphics drivers leak. Without
-  // XDG_RUNTIME_DIR, which desktops set, the Wayland library would print a line of its own.
-  RunResult run(const std::string& arguments, const std::string& environment = "") const {
-    const std::string command = fmt::format(
-        "cd '{0}' && env {1} XDG_RUNTIME_DIR='{0}' LSAN_OPTIONS=detect_leaks=0 '{2}' {3} >out "
-        "2>err",
-        dir_.string(), environment, ATLAS_PLAY, arguments);
-    const int status = std::system(command.c_str());
-    return {WIFEXITED(status) ? WEXITSTATUS(status) : 128, text_of(dir_ / "out"),
-            text_of(dir_ / "err")};
-  }
-
-  // Expects the program's own error message as the only line on stderr.
-  static void expect_one_line(const RunResult& r, const std::string& words) {
-    EXPECT_EQ(r.exit_code, 1) << r.errors;
-    EXPECT_EQ(r.errors.rfind("atlas-play: error: ", 0), 0u) << r.errors;
-    EXPECT_EQ(std::count(r.errors.begin(), r.errors.end(), '\n'), 1) << r.errors;
-    EXPECT_NE(r.errors.find(words), std::string::npos) << r.errors;
-  }
-  fs::path dir_;
-};
 
 TEST_F(AtlasPlay, WithoutAnEglDriver) {
   expect_one_line(run("roof.obj --headless -q", "__EGL_VENDOR_LIBRARY_DIRS=/nonexistent"), "EGL");
@@ -262,7 +212,7 @@ TEST_F(AtlasPlay, ThePlanNamesWhatIsNotCompiled) {
 }
 
 TEST_F(AtlasPlay, AWindowShowsItsPanelAndCloses) {
-  const atlas::test::Xvfb server;
+  const Xvfb server;
   if (!server.runs()) GTEST_SKIP() << "Xvfb is not installed";
   const RunResult r =
       run("roof.obj --width 160 --height 120 --map 64 --close-after 5 --screenshot w.png --debug",
@@ -273,7 +223,7 @@ TEST_F(AtlasPlay, AWindowShowsItsPanelAndCloses) {
 }
 
 TEST_F(AtlasPlay, ADisplayThatGoes) {
-  atlas::test::Xvfb server;
+  Xvfb server;
   if (!server.runs()) GTEST_SKIP() << "Xvfb is not installed";
   RunResult r;
   std::thread player(
@@ -292,3 +242,4 @@ TEST_F(AtlasPlay, ADisplayThatGoes) {
 }
 
 }  // namespace
+}  // namespace atlas::test

@@ -128,6 +128,7 @@ TEST_F(Mistakes, NamesAreNotEmpty) {
 
 TEST_F(Mistakes, AQuietPlanTellsNothing) {
   expect_complaint(ATLAS_EXPORT, "t.obj -o a.obj --plan -q", "--plan with --quiet tells nothing");
+  expect_complaint(ATLAS_PLAY, "t.obj --plan -q", "--plan with --quiet tells nothing");
 }
 
 TEST_F(Mistakes, NumbersThatLeaveNoRoom) {
