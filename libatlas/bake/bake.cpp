@@ -213,8 +213,14 @@ Status check(const ChartLight& light, std::span<const ChartPlacement> placements
     return {ErrorCode::bad_option, fmt::format("{} shifts; there must be 1..64", o.shifts)};
   if (o.mip_levels < 0 || o.mip_levels > 10)
     return {ErrorCode::bad_option, fmt::format("{} mip levels; there must be 0..10", o.mip_levels)};
+  if (Status s = check_scene_of(light); !s.ok()) return s;
   const int pad = gutter_pad(o.mip_levels);
   for (const ChartPlacement& p : placements) {
+    if (p.page != placements[0].page)
+      return {ErrorCode::bad_input,
+              fmt::format("chart {} lies on page {}, and chart {} on page {} (bake each page with "
+                          "its own placements)",
+                          placements[0].chart, placements[0].page, p.chart, p.page)};
     if (p.chart >= light.charts.charts.size())
       return {ErrorCode::bad_input, fmt::format("a placement names chart {}, but there are {}",
                                                 p.chart, light.charts.charts.size())};

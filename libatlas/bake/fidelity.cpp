@@ -191,6 +191,7 @@ FidelityMeter& FidelityMeter::operator=(FidelityMeter&&) noexcept = default;
 Result<FidelityMeter> FidelityMeter::make(const ChartLight& light,
                                           std::span<const ChartPlacement> placements,
                                           const FidelityOptions& options, const Context& context) {
+  if (Status s = check_scene_of(light); !s.ok()) return s;
   std::vector<std::int64_t> placed(light.charts.charts.size(), -1);
   for (std::size_t i = 0; i < placements.size(); ++i) {
     if (placements[i].chart >= placed.size())

@@ -72,6 +72,7 @@ Widened widen(const MeshView& mesh, const WidenOptions& options, ChartSet& set, 
 template <class Look>
 GapReport look_at_all(const ChartSet& charts, std::span<const double> clearance,
                       const Context& context, const Look& look) {
+  if (clearance.size() != charts.charts.size()) return {};
   std::vector<Widened> found(clearance.size());
   parallel_for(context, found.size(), 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t c = begin; c < end; ++c) {
@@ -94,6 +95,7 @@ GapReport look_at_all(const ChartSet& charts, std::span<const double> clearance,
 
 GapReport measure_gaps(const MeshView& mesh, std::span<const double> clearance,
                        const ChartSet& charts, const Context& context) {
+  if (charts.triangle_uv.size() != mesh.indices.size()) return {};
   return look_at_all(charts, clearance, context, [&](std::size_t c) {
     const Flat flat = flat_chart(mesh, charts, charts.charts[c]);
     return flat.corners.empty() ? Widened{} : measure_gaps(flat.mesh(), clearance[c], flat.uvs);
@@ -102,6 +104,7 @@ GapReport measure_gaps(const MeshView& mesh, std::span<const double> clearance,
 
 GapReport widen_gaps(const MeshView& mesh, const GapLimits& limits, ChartSet& charts,
                      const Context& context) {
+  if (charts.triangle_uv.size() != mesh.indices.size()) return {};
   const GapReport report = look_at_all(charts, limits.clearance, context, [&](std::size_t c) {
     Chart& chart = charts.charts[c];
     if (chart.kept) return Widened{};

@@ -19,7 +19,7 @@ struct GapReport {
 };
 
 struct GapLimits {
-  // Per chart, in units of its uvs, such as the distance across two texels. Charts whose
+  // One per chart, in units of its uvs, such as the distance across two texels. Charts whose
   // clearance is 0, or more than a fifth of the square root of their area, are not examined.
   std::span<const double> clearance = {};
   double max_stretch = 1.25;  // > 1, see ChartOptions::max_stretch
@@ -27,7 +27,8 @@ struct GapLimits {
 
 // Measures how much of the charts' borders is closer than the clearance (see GapLimits) to another
 // part of the same chart, although both are far apart on the surface: more than three clearances.
-// Changes nothing.
+// Changes nothing. Reports nothing if there is not one clearance per chart, or if the charts have
+// not as many triangles as the mesh; neither does widen_gaps().
 GapReport measure_gaps(const MeshView& mesh, std::span<const double> clearance,
                        const ChartSet& charts, const Context& context);
 

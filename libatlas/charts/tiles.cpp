@@ -1,5 +1,7 @@
 #include "libatlas/charts/tiles.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -332,6 +334,17 @@ std::size_t end_of_batch(const std::vector<Chart>& charts, std::size_t first) {
 Result<std::size_t> cut_to_limits(const MeshView& mesh, const TileLimits& limits, ChartSet& charts,
                                   const Context& context) {
   const std::vector<Chart>& old = charts.charts;
+  if (limits.sides.size() != old.size())
+    return Status(ErrorCode::bad_input,
+                  fmt::format("tiles: {} limits for {} charts", limits.sides.size(), old.size()));
+  for (std::size_t c = 0; c < old.size(); ++c) {
+    if (!(limits.sides[c] > 0))
+      return Status(
+          ErrorCode::bad_input,
+          fmt::format("tiles: the limit of chart {} is {} (above 0)", c, limits.sides[c]));
+  }
+  if (charts.triangle_uv.size() != mesh.indices.size())
+    return Status(ErrorCode::bad_input, "tiles: the charts are not those of the mesh");
   const auto too_long = [&](std::size_t c) { return old[c].size.x > limits.sides[c]; };
   std::size_t first = 0;
   while (first < old.size() && !too_long(first)) ++first;

@@ -17,7 +17,8 @@ namespace atlas {
 // Exceptions: the library itself throws only std::bad_alloc. An exception of a callback ends the
 // stage and leaves the call that was given the callback; files are whole or absent then, too.
 struct Context {
-  // Number of threads; 0 or less: as many as the machine has. Results never depend on it.
+  // Number of threads; 0 or less: as many as the machine has. At most 256, or as many as the
+  // machine has, are used. Results never depend on it.
   int threads = 0;
   // Called as (stage, fraction in [0, 1]), from any thread, but never from two threads at once by
   // the same library call. The fractions of a stage rise, stages follow each other, and some stages

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <map>
 #include <optional>
 #include <thread>
 
@@ -86,11 +87,22 @@ class ChunkOnThread {
   double begun_ = 0;
 };
 
+// Returns this thread's arena of so many threads, which it keeps for its later loops. An arena for
+// each loop would cost memory and time that TBB does not give back: 12 000 loops took 2.3 s instead
+// of 0.01.
+tbb::task_arena& own_arena(int threads) {
+  thread_local std::map<int, tbb::task_arena> arenas;
+  return arenas.try_emplace(threads, threads).first->second;
+}
+
 }  // namespace
 
 std::size_t thread_count(const Context& context) {
-  return context.threads > 0 ? std::size_t(context.threads)
-                             : std::max(1u, std::thread::hardware_concurrency());
+  const std::size_t machine = std::max(1u, std::thread::hardware_concurrency());
+  if (context.threads <= 0) return machine;
+  // Thousands of threads take seconds to begin, and most would have nothing to do.
+  constexpr std::size_t kMost = 256;
+  return std::min(std::size_t(context.threads), std::max(kMost, machine));
 }
 
 double own_cpu_seconds() {
@@ -134,11 +146,11 @@ void parallel_for(const Context& context, std::size_t n, std::size_t grain,
     // A context may ask for more threads than there are cores (tests do so to show that results do
     // not depend on the number). TBB grants them only with this limit.
     std::optional<tbb::global_control> limit;
-    if (context.threads > tbb::info::default_concurrency()) {
-      limit.emplace(tbb::global_control::max_allowed_parallelism, std::size_t(context.threads));
+    const auto threads = static_cast<int>(thread_count(context));
+    if (threads > tbb::info::default_concurrency()) {
+      limit.emplace(tbb::global_control::max_allowed_parallelism, std::size_t(threads));
     }
-    tbb::task_arena arena(context.threads > 0 ? context.threads : tbb::task_arena::automatic);
-    arena.execute(run_all);
+    own_arena(context.threads > 0 ? threads : tbb::task_arena::automatic).execute(run_all);
   }
   lent_seconds += lent;
 }

@@ -17,8 +17,8 @@ namespace atlas {
 void parallel_for(const Context& context, std::size_t n, std::size_t grain,
                   const std::function<void(std::size_t begin, std::size_t end)>& body);
 
-// Returns the number of threads that a context asks for, at least 1: the machine's number if the
-// context leaves it open.
+// Returns the number of threads that a context gets, at least 1: the machine's number if the
+// context leaves it open, and at most 256 or the machine's number if that is larger.
 std::size_t thread_count(const Context& context);
 
 // Returns the CPU time of the calling thread, plus that which its loops and background tasks

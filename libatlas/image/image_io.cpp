@@ -3,6 +3,8 @@
 #include <dlfcn.h>
 #include <fmt/format.h>
 
+#include <cstddef>
+#include <memory>
 #include <system_error>
 #include <utility>
 #include <vector>
@@ -33,9 +35,28 @@ fs::path built_folder(const fs::path& file) {
   return {};
 }
 
+// Returns where the system looks for the libraries of the program, which its run path names, too.
+// dlopen() by itself would look along the run path of the code that calls it, and with a sanitizer
+// that is the sanitizer.
+std::vector<fs::path> library_folders() {
+  std::vector<fs::path> folders;
+  void* const program = dlopen(nullptr, RTLD_LAZY);
+  Dl_serinfo size{};
+  if (!program || dlinfo(program, RTLD_DI_SERINFOSIZE, &size) != 0) return folders;
+  const auto words = size.dls_size / sizeof(std::max_align_t) + 1;
+  const auto room = std::make_unique<std::max_align_t[]>(words);
+  auto* const found = reinterpret_cast<Dl_serinfo*>(room.get());
+  if (dlinfo(program, RTLD_DI_SERINFOSIZE, found) != 0 ||
+      dlinfo(program, RTLD_DI_SERINFO, found) != 0)
+    return folders;
+  for (unsigned i = 0; i < found->dls_cnt; ++i)
+    folders.emplace_back(found->dls_serpath[i].dls_name);
+  return folders;
+}
+
 // Returns the folders where the module may be: beside the file that this code was linked into and
 // beside the program; in the lib/ next to the folder of either; where the module was built; where
-// it was to be installed.
+// it was to be installed; where the program's libraries are.
 std::vector<fs::path> module_folders() {
   std::error_code none;
   std::vector<fs::path> folders;
@@ -48,6 +69,7 @@ std::vector<fs::path> module_folders() {
   for (const fs::path& file : files)
     if (const fs::path built = built_folder(file); !built.empty()) folders.push_back(built);
   folders.push_back(LIBATLAS_INSTALL_FOLDER);
+  for (fs::path& folder : library_folders()) folders.push_back(std::move(folder));
   return folders;
 }
 
@@ -72,7 +94,7 @@ Module load() {
     handle = dlopen(file.c_str(), RTLD_NOW | RTLD_LOCAL);
     if (!handle) return failure();
   }
-  // Otherwise the system searches its library folders, including the program's rpath.
+  // Otherwise the system searches its list of libraries, too.
   if (!handle) handle = dlopen(LIBATLAS_IMAGE_MODULE, RTLD_NOW | RTLD_LOCAL);
   void* entry = handle ? dlsym(handle, "libatlas_image_files") : nullptr;
   if (!entry) return failure();
@@ -92,14 +114,16 @@ const Module& module() {
   return loaded;
 }
 
+Status missing_module(const std::string& name) {
+  return {ErrorCode::unsupported, fmt::format("{}: {}", name, module().why_not)};
+}
+
 // Calls the module's function, or returns the reason why there is no module.
 template <class Function, class... Arguments>
 auto call(Function ImageFiles::*function, const std::string& name, Arguments&&... arguments)
     -> decltype((std::declval<ImageFiles>().*function)(arguments...)) {
   const Module& files = module();
-  if (!files.functions) {
-    return Status(ErrorCode::unsupported, fmt::format("{}: {}", name, files.why_not));
-  }
+  if (!files.functions) return missing_module(name);
   return (files.functions->*function)(std::forward<Arguments>(arguments)...);
 }
 
@@ -119,6 +143,10 @@ Status check_image(const fs::path& path, const Image<T>& image, int most_channel
 }
 
 }  // namespace
+
+Status check_image_files() {
+  return module().functions ? Status() : missing_module("images");
+}
 
 Result<Image8> read_image8(const fs::path& path) {
   return call(&ImageFiles::read_image8, path.string(), path);

@@ -41,7 +41,7 @@ struct FitOptions {
   // Packs the charts as outlines instead of boxes. The list is empty or has one shape per item, in
   // the texels of the items' sizes. Each placement is then that of the mask's box. Boxes may
   // overlap, but masks never do. See outline.h.
-  std::span<const ChartShape> shapes;
+  std::span<const ChartShape> shapes = {};
   // Maximum number of directions tried for outlines, in multiples of 360/rotations degrees; 1, 2, 4
   // or a multiple of 4.
   std::uint32_t rotations = 4;

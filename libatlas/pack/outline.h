@@ -17,9 +17,9 @@ namespace atlas {
 // orientation. The data that the spans refer to must outlive the shape. A shape without triangles
 // takes no space.
 struct ChartShape {
-  std::span<const Vec2d> corners;  // the vertices
+  std::span<const Vec2d> corners = {};  // the vertices
   // Three indices into corners per triangle; if empty, every three corners are a triangle.
-  std::span<const std::uint32_t> triangles;
+  std::span<const std::uint32_t> triangles = {};
 };
 
 // Returns the area that the charts cover. Where triangles of one chart overlap, the area counts
@@ -36,7 +36,7 @@ struct OutlineOptions {
   std::int32_t padding = 1;
   std::int32_t border = 0;     // free texels along the page's edges, in addition to the padding
   std::int32_t alignment = 1;  // charts own whole cells of alignment × alignment texels
-  // Maximum number of directions tried: multiples of 360/rotations degrees.
+  // Maximum number of directions tried: multiples of 360/rotations degrees. At most 64.
   std::uint32_t rotations = 4;
   PackPreset preset = PackPreset::standard;
   double time_budget = 1.0;  // of `best`: wall time in seconds

@@ -49,7 +49,7 @@ enum class PackEngine {
 // A rectangle that must stay where it is. Nothing else is put there. It may lie anywhere in a page.
 struct PinnedRect {
   std::uint32_t page = 0;
-  Rect rect;
+  Rect rect = {};
 };
 
 struct PackOptions {
@@ -60,9 +60,9 @@ struct PackOptions {
   Extent page{2048, 2048};
   std::uint32_t max_pages = 0;  // 0: as many as needed
   bool allow_rotation = false;  // allows quarter turns
-  std::int32_t padding = 0;     // free texels between any two items; >= 0
-  std::int32_t border = 0;      // free texels along the page's edges; >= 0
-  // Items begin at multiples of this, counted from the page's corner; >= 1.
+  std::int32_t padding = 0;     // free texels between any two items; 0 .. 2^24
+  std::int32_t border = 0;      // free texels along the page's edges; 0 .. 2^24
+  // Items begin at multiples of this, counted from the page's corner; 1 .. 2^24.
   std::int32_t alignment = 1;
   // The shape of the pages that the result reports: each is cut to what is used and then rounded
   // up.
@@ -77,7 +77,7 @@ struct PackOptions {
   double time_budget = 1.0;  // wall time in seconds; infinity is allowed
   std::uint64_t effort = 0;  // maximum number of layouts that are tried; 0: no limit
   std::uint64_t seed = 1;
-  std::span<const PinnedRect> pinned;
+  std::span<const PinnedRect> pinned = {};
 };
 
 enum class UnplacedReason { too_large, no_room };

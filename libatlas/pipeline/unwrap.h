@@ -18,15 +18,15 @@ struct UnwrapOptions {
   ChartOptions charts = {};
   std::uint32_t pages = 1;        // the most pages to use, >= 1
   std::int32_t page_size = 2048;  // largest side of a page, texels, 64 to 16384
-  std::int32_t padding = 2;       // texels kept free around each chart, >= 0
+  std::int32_t padding = 2;       // texels kept free around each chart, 0 to a quarter of page_size
   // Prepares the pages to be baked with this many mip levels (BakeOptions::mip_levels), 0 to 10.
   // From 1 on, each chart gets at least gutter_pad(mip_levels) texels of padding, and whole cells
   // of 2^mip_levels texels, and the uvs of slivers lie within a texel of where the placements say
   // that light is baked. A padding of 1 is enough to bake with 0.
   std::int32_t mip_levels = 0;
-  // Boxes and cells of charts begin and end at multiples of this many texels, >= 1 (4 for textures
-  // compressed in blocks), and also at multiples of 2^mip_levels. It is a power of two for square
-  // or several pages, whose sides are powers of two.
+  // Boxes and cells of charts begin and end at multiples of this many texels, 1 to a quarter of
+  // page_size (4 for textures compressed in blocks), and also at multiples of 2^mip_levels. It is a
+  // power of two for square or several pages, whose sides are powers of two.
   std::int32_t alignment = 1;
   bool allow_rotation = true;  // turn charts to pack better; else they lie as their uvs do
   PackPreset packing = PackPreset::standard;

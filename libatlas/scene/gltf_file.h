@@ -7,6 +7,8 @@
 #include <span>
 #include <vector>
 
+// In a namespace of its own, so that programs that link libatlas may have a tinygltf, too.
+#define tinygltf atlas_tinygltf
 #define TINYGLTF_NO_STB_IMAGE
 #define TINYGLTF_NO_STB_IMAGE_WRITE
 #define TINYGLTF_NO_EXTERNAL_IMAGE

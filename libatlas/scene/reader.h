@@ -59,7 +59,7 @@ struct LoadedScene {
 //
 // Errors: not_found (no such file, no such buffer); bad_input (malformed as scene/defects.h defines
 // it; no usable triangle; an illumination file with another number of vertices); unsupported
-// (unknown extension, compressed glTF); bad_option; cancelled.
+// (unknown extension; glTF that requires an extension which is not read); bad_option; cancelled.
 Result<LoadedScene> read_scene(const std::filesystem::path& path, const ReadOptions& options,
                                const Context& context);
 

@@ -34,8 +34,8 @@ struct SunOptions {
 struct LightPathOptions {
   PathKind kind = PathKind::sun;
   PathEnd end = PathEnd::loop;
-  std::vector<Vec3d> directions;  // fixed: 1; line, arc: 2; keys: 2 or more; sun: none
-  SunOptions sun;
+  std::vector<Vec3d> directions = {};  // fixed: 1; line, arc: 2; keys: 2 or more; sun: none
+  SunOptions sun = {};
 };
 
 // Returns the declination of the sun on a day, in radians, by Cooper's formula (Solar Energy 12,

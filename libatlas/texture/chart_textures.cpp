@@ -196,6 +196,15 @@ void add_up(const std::vector<ChartOutcome>& outcomes, TextureResult& result) {
 
 }  // namespace
 
+Status check_scene_of(const ChartLight& light) {
+  const std::size_t charted = light.charts.triangle_chart.size();
+  const std::size_t triangles = light.sampler.scene().triangle_count();
+  if (charted == triangles) return {};
+  return {ErrorCode::bad_input,
+          fmt::format("the charts are of a mesh of {} triangles, and the scene has {}", charted,
+                      triangles)};
+}
+
 Status check_light(const ChartLight& light, std::uint32_t chart) {
   for (const std::uint32_t t : triangles_of(light.charts, light.charts.charts[chart])) {
     const int corner = light.sampler.bad_corner(t);
@@ -221,6 +230,7 @@ TexelSize texel_size(Vec2d size, Vec2d texels_per_unit) {
 std::vector<double> wanted_densities(const ChartLight& light, const TextureOptions& options,
                                      const Context& context) {
   constexpr std::size_t kGrain = 16;
+  if (!check_scene_of(light).ok()) return {};
   std::vector<double> densities(light.charts.charts.size());
   parallel_for(context, densities.size(), kGrain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t c = begin; c < end; ++c)
@@ -232,6 +242,7 @@ std::vector<double> wanted_densities(const ChartLight& light, const TextureOptio
 Result<TextureResult> size_chart_textures(const ChartLight& light, const TextureOptions& options,
                                           const Context& context) {
   if (Status s = check(options); !s.ok()) return s;
+  if (Status s = check_scene_of(light); !s.ok()) return s;
   const std::size_t n = light.charts.charts.size();
   for (std::size_t i = 0; i < n; ++i)
     if (Status s = check_light(light, static_cast<std::uint32_t>(i)); !s.ok()) return s;

@@ -21,6 +21,10 @@ struct ChartLight {
   const ToneMapping& tone;
 };
 
+// Whether the charts are those of the sampler's scene, as far as the number of triangles tells.
+// Error: bad_input.
+Status check_scene_of(const ChartLight& light);
+
 // Checks the light of a chart. Error: bad_input, which names triangle and vertex, if the light
 // times reflectance is not a number or is beyond 1e36. One such value would spread over the texels
 // around it.
@@ -66,7 +70,8 @@ struct TextureResult {
   double rms_error = 0, max_error = 0;  // over sampled_texels; all other texels lose nothing
 };
 
-// Returns the texels per unit that stage 2 asks for, for each chart, before any limit of a page.
+// Returns the texels per unit that stage 2 asks for, for each chart, before any limit of a page;
+// nothing if check_scene_of() finds an error.
 // The density follows from the texel's length, and is raised if the chart's diffuse texture is
 // finer.
 std::vector<double> wanted_densities(const ChartLight& light, const TextureOptions& options,
@@ -82,8 +87,8 @@ TexelSize texel_size(Vec2d size, Vec2d texels_per_unit);
 // RGB floats of these charts are the largest data in memory. Charts of one colour are not sampled
 // at all. The threshold is compared with tone-mapped, sRGB-encoded values in [0, 1], because equal
 // steps there are about equally visible, and because the atlas stores these values. Source:
-// Barladian et al., section 3, steps 2 and 3. Errors: bad_option; bad_input (see check_light);
-// cancelled.
+// Barladian et al., section 3, steps 2 and 3. Errors: bad_option; bad_input (see check_light and
+// check_scene_of); cancelled.
 Result<TextureResult> size_chart_textures(const ChartLight& light, const TextureOptions& options,
                                           const Context& context);
 

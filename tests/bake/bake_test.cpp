@@ -265,6 +265,28 @@ TEST(BakePage, RefusesWhatCannotBe) {
   EXPECT_EQ(code([](O& o, P&) { o.page_width = 0; }), ErrorCode::bad_option);
 }
 
+TEST(BakePage, RefusesPlacementsOfSeveralPagesAndChartsOfOtherScenes) {
+  LitShape shape = make_sheet({1, 1, 2, 2}, [](double, double) { return shown(1); });
+  append(shape, make_sheet({1, 1, 2, 2}, [](double, double) { return shown(1); }), {0, 0, 1});
+  ChartPlacement first = place(shape.charts, 0, {5, 5}, {4, 4});
+  ChartPlacement second = place(shape.charts, 1, {5, 5}, {16, 16});
+  EXPECT_TRUE(bake(shape, {first, second}, small_page(32)).ok());
+  second.page = 1;
+  EXPECT_NE(bake(shape, {first, second}, small_page(32))
+                .status()
+                .message()
+                .find("lies on page 0, and chart 1 on page 1"),
+            std::string::npos);
+  const LitShape other = make_sheet({1, 1, 2, 2}, [](double, double) { return shown(1); });
+  const LuminanceSampler sampler(other.scene, Quantity::illuminance);
+  const ChartLight mixed{sampler, shape.charts, kPlain};
+  const std::vector<ChartPlacement> placements{first};
+  EXPECT_EQ(bake_page(mixed, placements, small_page(32), {}).status().code(), ErrorCode::bad_input);
+  EXPECT_EQ(size_chart_textures(mixed, {}, {}).status().message(),
+            "the charts are of a mesh of 16 triangles, and the scene has 8");
+  EXPECT_TRUE(wanted_densities(mixed, {}, {}).empty());
+}
+
 // Charts show their light however little of a texel they cover. They were once black.
 TEST(BakePage, ShowsTheLightOfChartsFarBelowATexel) {
   for (const BakeMethod method : {BakeMethod::least_squares, BakeMethod::average})
