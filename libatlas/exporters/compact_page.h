@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 namespace atlas {
@@ -16,7 +17,7 @@ class Compactor {
     std::vector<std::uint32_t> indices;  // new indices
   };
 
-  Compact compact(const std::vector<std::uint32_t>& indices) {
+  Compact compact(std::span<const std::uint32_t> indices) {
     Compact result;
     result.indices.reserve(indices.size());
     for (const std::uint32_t i : indices) {

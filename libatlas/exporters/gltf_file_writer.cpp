@@ -84,7 +84,7 @@ class FileWriter {
       context.report("writing the world", double(p + 1) / double(numbers.size()));
     }
     document_.json["meshes"] = std::move(meshes);
-    place_kept_meshes(world_, numbers, document_.json);
+    place_kept_meshes(world_, numbers, document_.json, losses_);
     drop_empty_meshes(document_.json, losses_);
     keep_rest(source_, data_, document_.json, losses_);
     result.uv_set = texcoord_name(set_);

@@ -19,11 +19,38 @@ void leave_mesh(json& node) {
   for (const char* key : {"mesh", "skin", "weights"}) node.erase(key);
 }
 
+// Counts what the instances of a node have besides their places: nodes cannot have attributes, and
+// extras would have to be given to each of them.
+void count_instance_losses(const json& node, Losses& losses) {
+  const auto extensions = node.find("extensions");
+  if (extensions == node.end() || !extensions->is_object()) return;
+  const auto instancing = extensions->find(kGltfInstancing);
+  if (instancing == extensions->end() || !instancing->is_object()) return;
+  if (const auto at = instancing->find("attributes"); at != instancing->end()) {
+    for (const auto& [name, accessor] : at->items()) {
+      const bool place = name == "TRANSLATION" || name == "ROTATION" || name == "SCALE";
+      losses.add("attributes of instances other than their places (EXT_mesh_gpu_instancing)",
+                 !place);
+    }
+  }
+  for (const char* key : {"extras", "extensions"})
+    losses.add(fmt::format("{} of instances (EXT_mesh_gpu_instancing)", key),
+               instancing->contains(key));
+}
+
 // Visits the nodes in the order of the reader, so that the visits have the reader's numbers.
 class Walk {
  public:
-  Walk(const GltfSource& source, const std::vector<std::size_t>& meshes, json& nodes)
-      : source_(source), meshes_(meshes), nodes_(nodes), visited_(source.model.nodes.size()) {}
+  struct Target {
+    json& nodes;
+    Losses& losses;
+  };
+  Walk(const GltfSource& source, const std::vector<std::size_t>& meshes, const Target& target)
+      : source_(source),
+        meshes_(meshes),
+        nodes_(target.nodes),
+        losses_(target.losses),
+        visited_(source.model.nodes.size()) {}
 
   // Returns the number of the node that shows what `node` shows on this visit.
   std::size_t visit(int node) {
@@ -50,7 +77,11 @@ class Walk {
         nodes_[node]["mesh"] = meshes_[next_];
         continue;
       }
-      if (instances.empty()) holder = take_mesh(nodes_[node]);
+      if (instances.empty()) {
+        // A copy for another parent would count the same things again.
+        if (node < visited_.size()) count_instance_losses(nodes_[node], losses_);
+        holder = take_mesh(nodes_[node]);
+      }
       json instance = holder;
       instance["mesh"] = meshes_[next_];
       const glm::dmat4& m = source_.places[next_].matrix;
@@ -84,6 +115,7 @@ class Walk {
   const GltfSource& source_;
   const std::vector<std::size_t>& meshes_;
   json& nodes_;
+  Losses& losses_;
   std::vector<bool> visited_;
   std::size_t visits_ = 0, next_ = 0;
 };
@@ -123,12 +155,13 @@ std::vector<std::size_t> number_kept_meshes(const GltfSource& source) {
   return result;
 }
 
-void place_kept_meshes(const World& world, const std::vector<std::size_t>& meshes, json& document) {
+void place_kept_meshes(const World& world, const std::vector<std::size_t>& meshes, json& document,
+                       Losses& losses) {
   const GltfSource& source = *world.scene->source;
   json& nodes = document["nodes"];
   if (!nodes.is_array()) nodes = json::array();
   json roots = json::array();
-  Walk walk(source, meshes, nodes);
+  Walk walk(source, meshes, {nodes, losses});
   for (const int root : source.roots) roots.push_back(walk.visit(root));
   for (std::size_t i = 0; i < meshes.size(); ++i) {
     if (source.places[i].node >= 0) continue;

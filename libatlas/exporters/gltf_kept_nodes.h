@@ -17,10 +17,10 @@ std::vector<std::size_t> number_kept_meshes(const GltfSource& source);
 
 // Puts meshes of these numbers, one per place, into the nodes of `document`, which are those of the
 // source. Instances of a node become its children; a node with several parents becomes one node per
-// parent. If the world is not in metres or not y-up, another node is added above those that are
-// shown.
+// parent. What instances have besides their places is counted. If the world is not in metres or not
+// y-up, another node is added above those that are shown.
 void place_kept_meshes(const World& world, const std::vector<std::size_t>& meshes,
-                       nlohmann::json& document);
+                       nlohmann::json& document, Losses& losses);
 
 // Removes meshes that have lost all of their primitives, because the format forbids them, and
 // removes them from their nodes. The other meshes get new numbers.

@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <set>
+#include <string>
 #include <string_view>
+#include <vector>
 
 #include "libatlas/scene/gltf_instances.h"
 
@@ -92,14 +94,26 @@ void keep_skins(GltfData& data, json& document, Losses& losses) {
       losses.add("matrices of skins that cannot be read");
 }
 
+// Keeps those attributes of instances that only programs know (_ID, _COLOR_0).
+void keep_other_attributes(GltfData& data, json& attributes, Losses& losses) {
+  std::vector<std::string> others;
+  for (const auto& [name, accessor] : attributes.items())
+    if (name != "TRANSLATION" && name != "ROTATION" && name != "SCALE") others.push_back(name);
+  for (const std::string& name : others) {
+    if (!data.renumber(attributes, name.c_str()))
+      losses.add("attributes of instances whose data cannot be read");
+  }
+}
+
 // The instances of nodes that are shown have become nodes by now; these are those of other nodes.
 void keep_instances(GltfData& data, json& node, Losses& losses) {
   json& attributes = node["extensions"][kGltfInstancing]["attributes"];
   bool whole = attributes.is_object();
-  if (whole)
+  if (whole) {
     for (const char* name : {"TRANSLATION", "ROTATION", "SCALE"})
       if (attributes.contains(name)) whole &= data.renumber(attributes, name);
-  if (whole) return;
+  }
+  if (whole) return keep_other_attributes(data, attributes, losses);
   node["extensions"].erase(kGltfInstancing);
   losses.add("instances of nodes whose data cannot be read");
 }

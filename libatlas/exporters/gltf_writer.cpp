@@ -7,6 +7,7 @@
 #include "libatlas/core/glm_bridge.h"
 #include "libatlas/exporters/camera.h"
 #include "libatlas/exporters/gltf_document.h"
+#include "libatlas/exporters/page_sides.h"
 #include "libatlas/exporters/scene_writers.h"
 #include "libatlas/exporters/vertex_unifier.h"
 #include "libatlas/exporters/world.h"
@@ -30,22 +31,23 @@ class PagesWriter {
 
   Status add_page(std::size_t number, WorldFile& result) {
     const Page& page = world_.pages[number];
-    const auto unified = unifier_.unify(page.indices.size(), [&](std::size_t k) {
-      return std::array{page.indices[k], page.uv_indices[k]};
-    });
-    json primitive;
-    primitive["attributes"]["POSITION"] =
-        document_.add_positions(gather(world_.positions, unified.vertices, 0));
-    primitive["attributes"]["TEXCOORD_0"] =
-        document_.add_uvs(gather(world_.uvs, unified.vertices, 1));
-    primitive["indices"] = document_.add_indices(unified.indices);
-    primitive["material"] = document_.json["materials"].size();
-    document_.json["meshes"].push_back(
-        {{"name", fmt::format("page{}", number)}, {"primitives", json::array({primitive})}});
-    result.triangles += unified.indices.size() / 3;
-    result.vertices += unified.vertices.size();
-    result.uvs += unified.vertices.size();
-    return add_material(page, fmt::format("page{}", number));
+    const std::string name = fmt::format("page{}", number);
+    const PageSides both(page);
+    json primitives = json::array();
+    for (const PageSides::Side& side : both.sides()) {
+      primitives.push_back(add_side(side, result));
+      primitives.back()["material"] = document_.json["materials"].size() + primitives.size() - 1;
+    }
+    document_.json["meshes"].push_back({{"name", name}, {"primitives", std::move(primitives)}});
+    Result<json> material = material_of(page, name);
+    if (!material.ok()) return material.status();
+    for (const PageSides::Side& side : both.sides()) {
+      json of_side = *material;
+      of_side["doubleSided"] = !side.one_sided;
+      if (side.one_sided) of_side["name"] = name + "_one_sided";
+      document_.json["materials"].push_back(std::move(of_side));
+    }
+    return {};
   }
 
   // Adds the nodes and the camera; to be called when all meshes are known.
@@ -81,7 +83,25 @@ class PagesWriter {
     return farthest;
   }
 
-  Status add_material(const Page& page, const std::string& name) {
+  // Returns a primitive that has no material yet.
+  json add_side(const PageSides::Side& side, WorldFile& result) {
+    const auto unified = unifier_.unify(side.indices.size(), [&](std::size_t k) {
+      return std::array{side.indices[k], side.uv_indices[k]};
+    });
+    json primitive;
+    primitive["attributes"]["POSITION"] =
+        document_.add_positions(gather(world_.positions, unified.vertices, 0));
+    primitive["attributes"]["TEXCOORD_0"] =
+        document_.add_uvs(gather(world_.uvs, unified.vertices, 1));
+    primitive["indices"] = document_.add_indices(unified.indices);
+    result.triangles += unified.indices.size() / 3;
+    result.vertices += unified.vertices.size();
+    result.uvs += unified.vertices.size();
+    return primitive;
+  }
+
+  // Adds the page's image, and returns a material that shows it.
+  Result<json> material_of(const Page& page, const std::string& name) {
     json& file = document_.json;
     json material = {{"name", name}, {"doubleSided", true}};
     material["pbrMetallicRoughness"] = {{"metallicFactor", 0}, {"roughnessFactor", 1}};
@@ -107,8 +127,7 @@ class PagesWriter {
       file["textures"].push_back({{"sampler", 0}, {"source", index}});
       material["pbrMetallicRoughness"]["baseColorTexture"] = {{"index", index}};
     }
-    file["materials"].push_back(std::move(material));
-    return {};
+    return material;
   }
 
   static Result<FileBytes> read_image_bytes(const Page& page) {

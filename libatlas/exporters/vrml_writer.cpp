@@ -9,6 +9,7 @@
 #include "libatlas/core/glm_bridge.h"
 #include "libatlas/exporters/camera.h"
 #include "libatlas/exporters/compact_page.h"
+#include "libatlas/exporters/page_sides.h"
 #include "libatlas/exporters/text_output.h"
 #include "libatlas/exporters/world.h"
 
@@ -131,16 +132,19 @@ void write_triangles(TextFile& file, const std::vector<std::uint32_t>& indices,
   });
 }
 
-// The geometry of a page: its corners, and what is added to their positions.
+// The geometry of a Shape: its corners, what is added to their positions, and whether viewers skip
+// its triangles where they see their back.
 struct Part {
   Compactor::Compact points, uvs;
   Vec3d origin;
+  bool one_sided;
 };
 
 void write_part(TextFile& file, const World& world, const Part& part, const Context& context) {
   const Compactor::Compact &points = part.points, &uvs = part.uvs;
   if (!carries_light(world)) file.write("    creaseAngle 0.7\n");  // smooths round surfaces
-  file.write("    solid FALSE\n    coord Coordinate { point [\n");
+  file.write(part.one_sided ? "    solid TRUE\n" : "    solid FALSE\n");
+  file.write("    coord Coordinate { point [\n");
   file.write_items(points.used.size(), context, [&](TextBuffer& out, std::size_t i) {
     out.position(part.origin, world.positions[points.used[i]]);
     out.character('\n');
@@ -189,15 +193,19 @@ Result<WorldFile> write_vrml(const World& world, const fs::path& path, AtomicFil
   for (std::size_t i = 0; i < world.pages.size(); ++i) {
     const Page& page = world.pages[i];
     if (page.indices.empty()) continue;  // viewers warn of an IndexedFaceSet without faces
-    const Part part{positions.compact(page.indices), texcoords.compact(page.uv_indices), origin};
-    file.write(fmt::format("DEF Page_{} Shape {{\n", i));
-    file.write(appearance(page, carries_light(world)));
-    file.write("  geometry IndexedFaceSet {\n");
-    write_part(file, world, part, context);
-    file.write("  }\n}\n");
-    result.triangles += page.indices.size() / 3;
-    result.vertices += part.points.used.size();
-    result.uvs += part.uvs.used.size();
+    const PageSides both(page);
+    for (const PageSides::Side& side : both.sides()) {
+      const Part part{positions.compact(side.indices), texcoords.compact(side.uv_indices), origin,
+                      side.one_sided};
+      file.write(fmt::format("DEF Page_{}{} Shape {{\n", i, side.one_sided ? "_OneSided" : ""));
+      file.write(appearance(page, carries_light(world)));
+      file.write("  geometry IndexedFaceSet {\n");
+      write_part(file, world, part, context);
+      file.write("  }\n}\n");
+      result.triangles += side.indices.size() / 3;
+      result.vertices += part.points.used.size();
+      result.uvs += part.uvs.used.size();
+    }
     context.report("writing the world", double(i + 1) / double(world.pages.size()));
   }
   if (Status s = file.finish(); !s.ok()) return s;

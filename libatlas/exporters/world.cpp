@@ -86,6 +86,10 @@ Status check_world(const World& world) {
     Status s = check_indices(i, "indices", page.indices, world.positions.size());
     if (s.ok()) s = check_indices(i, "uv_indices", page.uv_indices, world.uvs.size());
     if (!s.ok()) return s;
+    if (!page.one_sided.empty() && page.one_sided.size() != page.indices.size() / 3) {
+      return wrong(fmt::format("page {} has {} values one_sided for {} triangles", i,
+                               page.one_sided.size(), page.indices.size() / 3));
+    }
   }
   return world.scene ? check_kept_scene(world) : Status();
 }

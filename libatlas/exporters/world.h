@@ -33,6 +33,9 @@ struct Page {
   std::filesystem::path image_source;
   std::vector<std::uint32_t> indices;     // 3 per triangle, into World::positions
   std::vector<std::uint32_t> uv_indices;  // 3 per triangle, into World::uvs
+  // 1 per triangle, or empty: whether it is seen from its front only, where its corners run
+  // counter-clockwise. All others are seen from both sides. OBJ cannot tell them apart.
+  std::vector<bool> one_sided = {};
 };
 
 struct World {
@@ -70,9 +73,10 @@ struct WorldFile {
 
 // Writes VRML97, gzipped if the name ends in .wrz. World::scene is refused (bad_option). Each page
 // is a Shape: an IndexedFaceSet of triangles with explicit texCoordIndex, unlit (no Material)
-// unless no page has an image, with textures that do not repeat, two-sided. Viewers hold single
-// floats: an origin farther from zero than 128 times the world's size is not added but noted in
-// WorldInfo, where read_scene() finds it.
+// unless no page has an image, with textures that do not repeat, two-sided. Page::one_sided become
+// a Shape of their own that is `solid TRUE`. Viewers hold single floats: an origin farther from
+// zero than 128 times the world's size is not added but noted in WorldInfo, where read_scene()
+// finds it.
 Result<WorldFile> write_vrml(const World& world, const std::filesystem::path& path,
                              AtomicFiles& files, const Context& context);
 
@@ -89,7 +93,8 @@ Result<WorldFile> write_obj(const World& world, const std::filesystem::path& pat
                             AtomicFiles& files, const Context& context);
 
 // Writes glTF 2.0: a .glb with everything embedded, or a .gltf with a .bin beside it. Materials
-// with an image are KHR_materials_unlit; the root node turns the scene's up axis to +Y, scales to
+// with an image are KHR_materials_unlit and double-sided, except for those of Page::one_sided,
+// which are primitives of their own; the root node turns the scene's up axis to +Y, scales to
 // metres and adds the origin, since glTF prescribes axis and unit.
 //
 // If World::scene has a source (Scene::source), that file is written again: its nodes, materials,

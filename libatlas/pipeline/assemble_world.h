@@ -21,6 +21,7 @@ struct WorldMesh {
   std::span<const std::uint32_t> indices;         // three per triangle, into Scene::positions
   std::span<const std::uint32_t> uv_indices;      // three per triangle, into ChartSet::uvs
   std::span<const std::uint32_t> triangle_chart;  // one per triangle
+  std::vector<bool> one_sided = {};               // one per triangle, or empty: Page::one_sided
 };
 
 // The scene's own triangles with the orientation that they have in the charts: the triangles in

@@ -22,6 +22,7 @@
 #include "libatlas/pipeline/layout_options.h"
 #include "libatlas/pipeline/light_seams.h"
 #include "libatlas/pipeline/longest_sides.h"
+#include "libatlas/pipeline/one_sided.h"
 #include "libatlas/pipeline/page_layout.h"
 #include "libatlas/pipeline/part_gaps.h"
 #include "libatlas/pipeline/stage_recorder.h"
@@ -330,9 +331,11 @@ class Export {
   Status write() {
     const Context& context = record_.begin("writing");
     const ChartedMesh fine(scene_.indices, charts_);
-    const WorldMesh mesh =
-        coarse_ ? WorldMesh{coarse_->indices, coarse_->uv_indices, coarse_->triangle_chart}
-                : fine.view();
+    WorldMesh mesh = coarse_
+                         ? WorldMesh{coarse_->indices, coarse_->uv_indices, coarse_->triangle_chart}
+                         : fine.view();
+    if (plan_.bake) mesh.one_sided = one_sided_triangles(scene_, charts_, mesh, context);
+    if (context.cancelled()) return Status::cancelled();
     AssembledWorld assembled =
         assemble_world(scene_, {charts_, layout_.placements, layout_.pages}, mesh, plan_.bake);
     World& world = assembled.world;

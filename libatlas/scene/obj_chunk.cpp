@@ -13,8 +13,8 @@
 namespace atlas {
 namespace {
 
-// Keywords that are skipped silently: smoothing, settings of viewers, and normals that are not
-// wanted.
+// Keywords that are skipped silently: settings of viewers, and normals and smoothing groups that
+// are not wanted.
 constexpr std::string_view kSilent[] = {"vn",     "vp",       "s",          "mg",
                                         "bevel",  "c_interp", "lod",        "usemap",
                                         "maplib", "d_interp", "shadow_obj", "trace_obj"};
@@ -26,7 +26,8 @@ std::int32_t clamp_index(std::int64_t index) {
 
 class Parser {
  public:
-  Parser(const char* begin, const char* end, bool normals) : scan_(begin, end), normals_(normals) {
+  Parser(const char* begin, const char* end, const ObjWanted& wanted)
+      : scan_(begin, end), normals_(wanted.normals), smoothing_(wanted.smoothing) {
     const auto bytes = static_cast<std::size_t>(end - begin);
     chunk_.positions.reserve(bytes / 100);  // typical: 100 bytes for a vertex with its two faces
     chunk_.position.index.reserve(bytes / 16);
@@ -53,6 +54,7 @@ class Parser {
     if (keyword == "vn" && normals_) return parse_normal();
     if (keyword == "o") return add_event(ObjEvent::object);
     if (keyword == "g") return add_event(ObjEvent::group);
+    if (keyword == "s" && smoothing_) return add_event(ObjEvent::smoothing);
     if (keyword == "usemtl") return add_event(ObjEvent::material);
     if (keyword == "mtllib") return add_event(ObjEvent::library);
     if (std::find(std::begin(kSilent), std::end(kSilent), keyword) == std::end(kSilent)) {
@@ -179,15 +181,15 @@ class Parser {
   }
 
   TextScanner scan_;
-  bool normals_;
+  bool normals_, smoothing_;
   ObjChunk chunk_;
   std::uint32_t line_ = 0;
 };
 
 }  // namespace
 
-ObjChunk parse_obj_chunk(const char* begin, const char* end, bool normals) {
-  return Parser(begin, end, normals).run();
+ObjChunk parse_obj_chunk(const char* begin, const char* end, const ObjWanted& wanted) {
+  return Parser(begin, end, wanted).run();
 }
 
 }  // namespace atlas

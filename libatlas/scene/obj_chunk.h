@@ -13,7 +13,7 @@ namespace atlas {
 
 // A line that changes the state of the faces after it.
 struct ObjEvent {
-  enum Kind { object, group, material, library };
+  enum Kind { object, group, material, library, smoothing };
   Kind kind{};
   std::uint32_t face = 0;  // number of the chunk's faces before it
   std::uint32_t line = 0;
@@ -47,8 +47,13 @@ struct ObjChunk {
   std::uint32_t error_line = 0;
 };
 
-// Parses [begin, end), which begins and ends at line boundaries. Skips normals unless `normals` is
-// set. Reports errors only in chunk.error.
-ObjChunk parse_obj_chunk(const char* begin, const char* end, bool normals);
+// What a scene takes of a file only if it is asked for.
+struct ObjWanted {
+  bool normals = false, smoothing = false;
+};
+
+// Parses [begin, end), which begins and ends at line boundaries. Reports errors only in
+// chunk.error.
+ObjChunk parse_obj_chunk(const char* begin, const char* end, const ObjWanted& wanted);
 
 }  // namespace atlas

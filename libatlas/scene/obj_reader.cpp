@@ -64,10 +64,19 @@ class Merger {
       line_ += chunk.lines;
       chunk = {};
     }
+    if (builder_.wants_rest) count_not_read();
     return {};
   }
 
  private:
+  // A scene holds neither smoothing groups nor groups within objects.
+  void count_not_read() {
+    if (!smoothing_groups_.empty())
+      builder_.not_read["smoothing groups (s) of faces without normals"] = smoothing_groups_.size();
+    if (!inner_groups_.empty())
+      builder_.not_read["groups (g) within objects"] = inner_groups_.size();
+  }
+
   struct Counts {
     std::size_t positions = 0, texcoords = 0, normals = 0;
   };
@@ -203,6 +212,11 @@ class Merger {
       vertices.assign(chunk.position.index.begin() + begin, chunk.position.index.begin() + end);
       copy_corners(chunk.texcoord, begin, end, uvs);
       copy_corners(chunk.normal, begin, end, normals);
+      if (!smoothing_.empty() && !smoothing_counted_ &&
+          (normals.empty() || normals[0] == SceneBuilder::kNoIndex)) {
+        smoothing_groups_.insert(smoothing_);
+        smoothing_counted_ = true;
+      }
       builder_.add_face({vertices, uvs, normals}, [&] { return place(chunk.face_line[face]); });
       begin = end;
     }
@@ -221,6 +235,11 @@ class Merger {
                              [&] { return fmt::format("{}: '{}'", place(event.line), name); });
       }
       builder_.material = at->second;
+    } else if (event.kind == ObjEvent::smoothing) {
+      smoothing_ = name == "off" || name == "0" ? "" : name;
+      smoothing_counted_ = false;
+    } else if (event.kind == ObjEvent::group && has_objects_) {
+      if (builder_.wants_rest && !name.empty()) inner_groups_.insert(name);
     } else if (event.kind == (has_objects_ ? ObjEvent::object : ObjEvent::group)) {
       const auto next = static_cast<std::uint32_t>(builder_.objects.size());
       const auto [at, is_new] = object_id_.try_emplace(name, next);
@@ -236,6 +255,9 @@ class Merger {
   std::vector<Counts> counts_;           // 1 per chunk
   std::vector<std::string> bad_places_;  // places of the first unusable positions
   std::map<std::string, std::uint32_t> material_id_, object_id_;
+  std::string smoothing_;  // group of the faces that follow; empty if there is none
+  bool smoothing_counted_ = false;
+  std::set<std::string> smoothing_groups_, inner_groups_;
   std::set<fs::path> libraries_;  // those already read or reported
 };
 
@@ -275,7 +297,8 @@ Status read_obj(const fs::path& path, SceneBuilder& builder, const Context& cont
   std::vector<ObjChunk> chunks(borders.size() - 1);
   parallel_for(context, chunks.size(), 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
-      chunks[i] = parse_obj_chunk(borders[i], borders[i + 1], builder.wants_normals);
+      chunks[i] =
+          parse_obj_chunk(borders[i], borders[i + 1], {builder.wants_normals, builder.wants_rest});
     }
   });
   if (context.cancelled()) return Status::cancelled();

@@ -28,6 +28,9 @@ struct Shape {
   std::vector<double> corners, uv_corners;  // indices, with a -1 after each face
   std::uint32_t material = 0;
   bool clockwise = false;  // the order of a face's corners, seen from its front
+  // Whether the file says so itself. TRUE is also the default, but many files do not say it of
+  // faces that are to be seen from both sides, so these stay double-sided.
+  bool solid = false;
 };
 
 glm::dmat4 rotation(const glm::dvec4& axis_and_angle) {
@@ -44,8 +47,9 @@ bool is_group(std::string_view type) {
 
 // Materials with the same key are the same in all that is read.
 auto key_of(const RawMaterial& m) {
-  return std::tuple(m.name, m.texture, m.wrap_u, m.wrap_v, m.uv_u, m.uv_v, m.opacity, m.diffuse.x,
-                    m.diffuse.y, m.diffuse.z, m.emission.x, m.emission.y, m.emission.z);
+  return std::tuple(m.name, m.texture, m.wrap_u, m.wrap_v, m.uv_u, m.uv_v, m.opacity,
+                    m.double_sided, m.diffuse.x, m.diffuse.y, m.diffuse.z, m.emission.x,
+                    m.emission.y, m.emission.z);
 }
 
 class VrmlParser : VrmlScanner {
@@ -201,6 +205,7 @@ class VrmlParser : VrmlScanner {
       return true;
     });
     if (!has_faces) return;
+    material.double_sided = !result.solid;
     result.material = material_of(std::move(material));
     const std::size_t base = builder_.positions.size();
     for (const Vec3d& p : result.points) {
@@ -234,6 +239,7 @@ class VrmlParser : VrmlScanner {
       if (name == "coordIndex") return shape.corners = list(1), true;
       if (name == "texCoordIndex") return shape.uv_corners = list(1), true;
       if (name == "ccw") return shape.clockwise = next() == "FALSE", true;
+      if (name == "solid") return shape.solid = next() == "TRUE", true;
       if (name != "coord" && name != "texCoord") return false;
       const bool uv = name == "texCoord";
       read_node(next(), [&](std::string_view, std::string_view) { points(uv, shape); });

@@ -271,7 +271,8 @@ void Renderer::Impl::draw_lighting() {
 }
 
 // Draws the clusters front to back, without those out of view, so that hidden surfaces are not
-// shaded at all. Textured scenes keep that order only within each look.
+// shaded at all. Textured scenes keep that order only within each look. Back faces are culled of
+// looks that are one-sided, which come last of those of one texture.
 void Renderer::Impl::draw_clusters(const Camera& camera, FrameStats& stats) {
   const Frustum frustum = frustum_of(camera, double(target_width) / target_height);
   const glm::vec3 eye(to_glm(camera.eye));
@@ -280,7 +281,8 @@ void Renderer::Impl::draw_clusters(const Camera& camera, FrameStats& stats) {
     const ViewScene::Cluster& c = scene->clusters[i];
     const glm::vec3 centre = to_glm(c.centre);
     if (!frustum.touches(centre, c.radius)) continue;
-    const ViewScene::Look look = features.textured ? c.look : ViewScene::Look{};
+    ViewScene::Look look = c.look;
+    if (!features.textured) look = {.one_sided = c.look.one_sided};
     order.push_back({look, glm::length(centre - eye) - c.radius, i});
   }
   std::sort(order.begin(), order.end());
@@ -300,8 +302,10 @@ void Renderer::Impl::draw_clusters(const Camera& camera, FrameStats& stats) {
       glBindTextureUnit(0, texture.get());
       glBindSampler(0, scene->sampler(look).get());
     }
+    if (look.one_sided) glEnable(GL_CULL_FACE);
     glMultiDrawElements(GL_TRIANGLES, counts.data(), GL_UNSIGNED_INT, offsets.data(),
                         GLsizei(counts.size()));
+    if (look.one_sided) glDisable(GL_CULL_FACE);
   }
 }
 

@@ -136,13 +136,15 @@ class Builder {
     textured_ = scene.textured() && !scene.texcoord_indices.empty();
     emits_ = std::any_of(scene.materials.begin(), scene.materials.end(),
                          [](const Material& m) { return plain_emission(m) != Vec3f{}; });
+    baked_ = textured_ && options.textures_hold_light;
   }
 
   ViewScene::Look look_of(std::uint32_t triangle) const {
     if (!textured_) return {};
     const Material& m = scene_.materials[scene_.triangle_material[triangle]];
-    if (m.texture < 0) return {};
-    return {m.texture, m.wrap_u, m.wrap_v};
+    const bool one_sided = baked_ && !m.double_sided;
+    if (m.texture < 0) return {.one_sided = one_sided};
+    return {m.texture, m.wrap_u, m.wrap_v, one_sided};
   }
 
   // Returns the triangles grouped by look, and within each look along a curve that keeps neighbours
@@ -242,7 +244,7 @@ class Builder {
   Buckets corners_at_;  // of each welded vertex
   std::vector<glm::vec3> faces_;
   float cosine_;
-  bool textured_ = false, emits_ = false;
+  bool textured_ = false, emits_ = false, baked_ = false;
   ViewScene view_;
   std::unordered_map<CornerKey, std::uint32_t, CornerHash> known_;
 };

@@ -24,10 +24,12 @@ struct ViewScene {
   std::vector<Vec3f> illumination;  // linear, as given
   std::vector<std::uint32_t> indices;
 
-  // A texture (-1: none) and how it continues beyond its edges.
+  // A texture (-1: none), how it continues beyond its edges, and whether triangles are left out
+  // where their back is seen.
   struct Look {
     std::int32_t texture = -1;
     TextureWrap wrap_u = TextureWrap::repeat, wrap_v = TextureWrap::repeat;
+    bool one_sided = false;
     auto operator<=>(const Look&) const = default;
   };
 
@@ -59,6 +61,8 @@ struct ViewScene {
 
 struct ViewSceneOptions {
   double crease_degrees = 40;  // faces that meet at less than this are shaded as one surface
+  // Baked pages hold the light of a surface's front. Only on these are materials that are not
+  // double-sided (Material::double_sided) left out from behind.
   bool textures_hold_light = false;
   // Triangles per cluster: few enough to follow the depth order, many enough that their draw calls
   // cost little (256 to 1024 measured alike on the software renderer).

@@ -50,6 +50,30 @@ TEST(KeptMtl, LinesOfMtl) {
              "1 x lines of the MTL: map_Bump", "1 x lines of the MTL: map_d"}));
 }
 
+// Without normals, smoothing groups decide the shading, so they are missed there and only there.
+TEST(KeptMtl, SmoothingGroupsAndInnerGroupsAreCounted) {
+  const TempFolder folder;
+  const std::string points = "v 0 0 0\nv 1 0 0\nv 0 1 0\nvn 0 0 1\n";
+  const auto not_kept = [&](const std::string& lines) {
+    const path obj = folder.write("s.obj", points + lines);
+    const Lines in_obj = keep(obj, folder / "w.obj", kRest).not_kept;
+    EXPECT_EQ(keep(obj, folder / "w.glb", kRest).not_kept, in_obj);
+    return in_obj;
+  };
+  const std::string plain = "f 1 2 3\n", with_normals = "f 1//1 2//1 3//1\n";
+  EXPECT_EQ(not_kept("s 1\n" + plain + "s 2\n" + plain + "s 1\n" + plain + "s off\n" + plain),
+            Lines{"2 x smoothing groups (s) of faces without normals"});
+  EXPECT_EQ(not_kept("s 1\n" + with_normals + "s 0\n" + plain + "s 7\n"), Lines{});
+  EXPECT_EQ(not_kept("s 1\n" + with_normals + plain),
+            Lines{"1 x smoothing groups (s) of faces without normals"});
+  EXPECT_EQ(not_kept("o a\ng left\n" + plain + "g right\n" + plain + "o b\ng left\n" + plain),
+            Lines{"2 x groups (g) within objects"});
+  EXPECT_EQ(not_kept("g left\n" + plain + "g right\n" + plain), Lines{}) << "they are objects";
+  const auto loaded = read_scene(folder.write("s.obj", points + "s 1\n" + plain), {}, {});
+  ASSERT_TRUE(loaded.ok());
+  EXPECT_TRUE(loaded->scene.not_read.empty()) << "only scenes that are kept need it";
+}
+
 // Of the lines `d`, a scene holds one fraction only. The others stay in an OBJ and are counted in a
 // glTF, even beside a fraction.
 TEST(KeptMtl, OpacityThatDependsOnTheViewIsNotLostInSilence) {

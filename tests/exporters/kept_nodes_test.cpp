@@ -42,6 +42,31 @@ TEST(KeptGltf, InstancesBecomeNodes) {
   EXPECT_EQ(first, (std::set<double>{0, 5.0 / 64, 6.0 / 64}));  // the second is mirrored
 }
 
+// Nodes cannot have attributes, so those of instances that only programs know are counted, once for
+// a node that two parents show.
+TEST(KeptGltf, WhatElseInstancesHaveIsCounted) {
+  const TempFolder folder;
+  Gltf gltf;
+  const int positions = gltf.floats({0, 0, 0, 1, 0, 0, 0, 1, 0}, "VEC3", 3);
+  const int places = gltf.floats({0, 0, 0, 5, 0, 0}, "VEC3", 3);
+  const int ids = gltf.floats({1, 2}, "SCALAR", 1);
+  const int colours = gltf.floats({1, 0, 0, 0, 0, 1}, "VEC3", 3);
+  const json instancing = {
+      {"EXT_mesh_gpu_instancing",
+       {{"attributes", {{"TRANSLATION", places}, {"_ID", ids}, {"_COLOR_0", colours}}},
+        {"extras", {{"species", "oak"}}}}}};
+  gltf.single({{"attributes", {{"POSITION", positions}}}}, {{"extensions", instancing}});
+  gltf.j["nodes"].push_back({{"children", {0}}, {"translation", {10, 0, 0}}});
+  gltf.j["nodes"].push_back({{"children", {0, 1}}});
+  gltf.j["scenes"][0]["nodes"] = {2};
+  const WorldFile written = keep(folder.write("s.glb", gltf.glb()), folder / "w.glb");
+  EXPECT_EQ(written.triangles, 4u);
+  EXPECT_EQ(written.not_kept,
+            (std::vector<std::string>{
+                "2 x attributes of instances other than their places (EXT_mesh_gpu_instancing)",
+                "1 x extras of instances (EXT_mesh_gpu_instancing)"}));
+}
+
 // Weights of morph targets go with the mesh. A node without a name has instances without names, and
 // an instance that stays in its place needs no matrix.
 TEST(KeptGltf, InstancesHaveTheWeightsOfTheirNode) {

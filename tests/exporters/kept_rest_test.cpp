@@ -181,7 +181,11 @@ TEST(KeptRest, OtherScenesKeepAllTheirData) {
   const json stars = {
       {"attributes", {{"POSITION", positions}}}, {"mode", 0}, {"targets", json::array({morph})}};
   gltf.j["meshes"].push_back({{"name", "stars"}, {"primitives", json::array({stars})}});
-  const json instances = {{"TRANSLATION", gltf.floats(places, "VEC3", 3)}};
+  // Accessors get other numbers, so those of attributes that only programs know must be followed.
+  const std::vector<float> ids{17, 18};
+  const int id = gltf.floats(ids, "SCALAR", 1);
+  const json instances = {
+      {"TRANSLATION", gltf.floats(places, "VEC3", 3)}, {"_ID", id}, {"_GONE", 99}};
   gltf.j["nodes"].push_back(
       {{"mesh", 1},
        {"name", "sky"},
@@ -190,7 +194,8 @@ TEST(KeptRest, OtherScenesKeepAllTheirData) {
   gltf.j["extensionsUsed"] = {"EXT_mesh_gpu_instancing"};
   const path in = folder.write("s.glb", gltf.glb());
   EXPECT_EQ(keep(in, folder / "w.glb").not_kept,
-            Lines{"1 x meshes that are not shown and get no new uvs"});
+            (Lines{"1 x attributes of instances whose data cannot be read",
+                   "1 x meshes that are not shown and get no new uvs"}));
 
   GltfOracle after(folder / "w.glb");
   const auto named = [&](const char* list, const char* name) -> const json& {
@@ -207,6 +212,9 @@ TEST(KeptRest, OtherScenesKeepAllTheirData) {
   const json& node = named("nodes", "sky");
   EXPECT_EQ(values(node["extensions"]["EXT_mesh_gpu_instancing"]["attributes"]["TRANSLATION"]),
             places);
+  const json& others = node["extensions"]["EXT_mesh_gpu_instancing"]["attributes"];
+  EXPECT_EQ(values(others["_ID"]), ids);
+  EXPECT_FALSE(others.contains("_GONE"));
   json& sparse = after.document["accessors"][points["attributes"]["POSITION"].get<std::size_t>()];
   const json list = sparse["sparse"];
   sparse.erase("sparse");

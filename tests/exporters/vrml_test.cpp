@@ -273,6 +273,48 @@ TEST(Vrml, AWorldWithoutLightIsLitByTheViewer) {
   }
 }
 
+// Viewers cull the back faces of a face set that is solid.
+TEST(Vrml, OneSidedTrianglesAreASolidShape) {
+  const TempFolder folder;
+  World world = wavy_world(6, 2);
+  const std::string plain = write(world, folder / "w.wrl");
+  const std::size_t triangles = world.pages[1].indices.size() / 3;
+  world.pages[1].one_sided.assign(triangles, false);
+  EXPECT_EQ(write(world, folder / "w.wrl"), plain);
+
+  std::vector<std::uint32_t>
+      corners[2];  // of the triangles seen from both sides, and of the others
+  for (std::size_t t = 0; t < triangles; ++t) {
+    world.pages[1].one_sided[t] = t % 3 == 1;
+    for (std::size_t k = 3 * t; k < 3 * t + 3; ++k)
+      corners[t % 3 == 1].push_back(world.pages[1].indices[k]);
+  }
+  const Nodes nodes = parse_vrml(write(world, folder / "w.wrl"));
+  const auto shapes = of_type(nodes, "Shape");
+  ASSERT_EQ(shapes.size(), 3u);
+  expect_shape(*shapes[0], world, 0);
+  for (const int one_sided : {0, 1}) {
+    const VrmlNode& shape = *shapes[1 + std::size_t(one_sided)];
+    const VrmlNode& faces = shape.child("geometry");
+    EXPECT_EQ(shape.child("appearance").child("texture").field("url")[0],
+              '"' + world.pages[1].image + '"');
+    EXPECT_EQ(faces.field("solid")[0], one_sided ? "TRUE" : "FALSE");
+    EXPECT_FALSE(faces.has("ccw"));  // counter-clockwise, by default
+    const auto points = numbers(faces.child("coord").field("point"));
+    const auto list = triangle_list(faces, "coordIndex", points.size() / 3);
+    ASSERT_EQ(list.size(), corners[one_sided].size());
+    for (std::size_t k = 0; k < list.size(); ++k) {
+      const Vec3f& p = world.positions[corners[one_sided][k]];
+      const double* q = &points[3 * std::size_t(list[k])];
+      ASSERT_EQ((Vec3f{float(q[0]), float(q[1]), float(q[2])}), p);
+    }
+  }
+  world.pages[1].one_sided.assign(triangles, true);
+  const Nodes solid = parse_vrml(write(world, folder / "w.wrl"));
+  ASSERT_EQ(of_type(solid, "Shape").size(), 2u);
+  EXPECT_EQ(of_type(solid, "Shape")[1]->child("geometry").field("solid")[0], "TRUE");
+}
+
 TEST(Vrml, GzipHoldsTheSameText) {
   const TempFolder folder;
   const World world = wavy_world(50, 2);

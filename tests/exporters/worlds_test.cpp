@@ -66,6 +66,57 @@ TEST(Worlds, WhatIsWrittenOfScenesIsCounted) {
   EXPECT_EQ(written.uvs, 3u);
 }
 
+// The material of a primitive says whether its triangles are seen from behind.
+TEST(Worlds, OneSidedTrianglesAreAPrimitiveOfGltf) {
+  for (const std::string name : {"w.gltf", "w.glb"}) {
+    const TempFolder folder;
+    World world = two_pages();
+    ASSERT_TRUE(write_kept(world, folder / name).ok());
+    const std::string plain = TempFolder::read(folder / name);
+    Page& page = world.pages[0];
+    page.indices.insert(page.indices.end(), {3, 1, 2});
+    page.uv_indices.insert(page.uv_indices.end(), {2, 1, 0});
+    page.one_sided = {true, false};
+    const auto written = write_kept(world, folder / name);
+    ASSERT_TRUE(written.ok()) << written.status().message();
+    EXPECT_EQ(written->triangles, 3u);
+    const GltfOracle file(folder / name);
+    ASSERT_EQ(file.document["meshes"].size(), 2u);
+    const auto triangles = file.triangles();
+    ASSERT_EQ(triangles.size(), 3u);
+    std::vector<bool> double_sided;
+    for (const OracleTriangle& t : triangles)
+      double_sided.push_back(
+          file.document["materials"][std::size_t(t.material)].value("doubleSided", false));
+    EXPECT_EQ(double_sided, (std::vector<bool>{true, false, true}));
+    EXPECT_EQ(triangles[0].attributes.at("POSITION"),
+              (std::vector<double>{1, 1, 0, 1, 0, 0, 0, 1, 0}));
+    EXPECT_EQ(triangles[1].attributes.at("POSITION"),
+              (std::vector<double>{0, 0, 0, 1, 0, 0, 0, 1, 0}));
+
+    World same = two_pages();
+    for (Page& p : same.pages) p.one_sided = {false};
+    ASSERT_TRUE(write_kept(same, folder / name).ok());
+    EXPECT_EQ(TempFolder::read(folder / name), plain);
+  }
+}
+
+// OBJ has no word for it, and the order of its faces stays.
+TEST(Worlds, OneSidedTrianglesAreNotToldInObj) {
+  const TempFolder folder;
+  World world = two_pages();
+  ASSERT_TRUE(write_kept(world, folder / "w.obj").ok());
+  const std::string plain = TempFolder::read(folder / "w.obj");
+  for (Page& page : world.pages) page.one_sided = {true};
+  ASSERT_TRUE(write_kept(world, folder / "w.obj").ok());
+  EXPECT_EQ(TempFolder::read(folder / "w.obj"), plain);
+  world.pages[1].one_sided = {true, false};
+  const auto refused = write_kept(world, folder / "w.obj");
+  EXPECT_EQ(refused.status().code(), ErrorCode::bad_input);
+  EXPECT_NE(refused.status().message().find("2 values one_sided for 1 triangles"),
+            std::string::npos);
+}
+
 TEST(Worlds, CancellingLeavesNothingBehind) {
   const std::atomic<bool> raised{true};
   Context context;

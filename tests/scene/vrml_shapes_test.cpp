@@ -35,6 +35,24 @@ TEST(Vrml, FacesMayRunClockwise) {
   EXPECT_EQ(order("ccw FALSE ", "1 -1 1"), (Ids{0, 1, 2})) << "mirrored, too";
 }
 
+// A face set that says that it is solid is seen from its front only. Many files leave the default
+// where they mean the other, so what they do not say is read as double-sided.
+TEST(Vrml, SolidFacesAreNotDoubleSided) {
+  const TempFolder folder;
+  const auto faces = [](const std::string& field) {
+    return "Shape { geometry IndexedFaceSet { " + field +
+           "coord Coordinate { point [ 0 0 0 0 1 0 0 0 1 ] } coordIndex [ 0 1 2 -1 ] } }\n";
+  };
+  const Scene scene = scene_of(
+      folder, faces("solid TRUE ") + faces("solid FALSE ") + faces("") + faces("solid TRUE "));
+  ASSERT_EQ(scene.triangle_count(), 4u);
+  std::vector<bool> double_sided;
+  for (const std::uint32_t m : scene.triangle_material)
+    double_sided.push_back(scene.materials[m].double_sided);
+  EXPECT_EQ(double_sided, (std::vector<bool>{false, true, true, false}));
+  EXPECT_EQ(scene.materials.size(), 2u);
+}
+
 // The corner (3, 0, 0) seen from the centre is (2, 0, 0); scaled it is (4, 0, 0), turned (0, 4, 0),
 // seen from 0 again (1, 4, 0), and moved (11, 4, 0).
 TEST(Vrml, TransformsScaleTurnAndMoveInThisOrder) {

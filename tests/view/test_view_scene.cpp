@@ -190,6 +190,29 @@ TEST(ViewScene, OnlyTexturesTellLooksApart) {
   EXPECT_EQ(v.clusters[2].look, (ViewScene::Look{0, TextureWrap::repeat, TextureWrap::mirror}));
 }
 
+// Materials of ordinary scenes are often one-sided by default, and shown from both sides.
+TEST(ViewScene, OnlyOnBakedPagesMaterialsAreOneSided) {
+  Scene s;
+  add_quad(s, {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}});
+  s.materials.resize(2, s.materials[0]);
+  s.materials[1].texture = 0;
+  s.materials[1].double_sided = false;
+  s.triangle_material = {1, 0};
+  s.textures.resize(1);
+  s.textures[0].image = Image8(2, 2, 3, 128);
+  s.texcoords = {{0.25f, 0.75f}};
+  s.texcoord_indices.assign(6, 0);
+  for (const bool baked : {false, true}) {
+    ViewSceneOptions o;
+    o.textures_hold_light = baked;
+    const ViewScene v = *make_view_scene(s, o);
+    ASSERT_EQ(v.clusters.size(), 2u);
+    EXPECT_FALSE(v.clusters[0].look.one_sided);
+    EXPECT_EQ(v.clusters[1].look.one_sided, baked);
+    EXPECT_EQ(v.caster_indices.size(), 6u) << "both cast shadows";
+  }
+}
+
 TEST(ViewScene, ClustersLieCloseTogetherAlongEveryAxis) {
   for (int axis = 0; axis < 3; ++axis) {
     Scene s;

@@ -1,0 +1,235 @@
+// Thin sheets of two layers, from lit scene to written file: each side shows its own light alone.
+#include "libatlas/pipeline/one_sided.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <functional>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "libatlas/image/image_io.h"
+#include "libatlas/pipeline/export_world.h"
+#include "tests/pipeline/lit_scene.h"
+#include "tests/scene/temp_folder.h"
+#include "tests/support/gltf_oracle.h"
+
+namespace atlas::test {
+namespace {
+
+using Height = std::function<double(double, double)>;
+
+// A height field over [0, width] x [0, 1].
+struct Layer {
+  int cells = 12;  // along each side of the square [0, 1] x [0, 1]
+  double width = 1;
+  bool from_above = true;  // its orientation
+  bool other_diagonals = false;
+  float light = 100;
+};
+
+void add_layer(const Layer& layer, const Height& height, Scene& scene) {
+  const auto base = std::uint32_t(scene.positions.size());
+  const int columns = int(std::lround(layer.cells * layer.width));
+  for (int j = 0; j <= layer.cells; ++j) {
+    for (int i = 0; i <= columns; ++i) {
+      const double x = double(i) / layer.cells, y = double(j) / layer.cells;
+      scene.positions.push_back({float(x), float(y), float(height(x, y))});
+      scene.illumination.push_back({layer.light, layer.light, layer.light});
+    }
+  }
+  const auto row = std::uint32_t(columns + 1);
+  for (int j = 0; j < layer.cells; ++j) {
+    for (int i = 0; i < columns; ++i) {
+      const std::uint32_t v = base + std::uint32_t(j) * row + std::uint32_t(i);
+      std::array<std::uint32_t, 6> k{v, v + 1, v + row + 1, v, v + row + 1, v + row};
+      if (layer.other_diagonals) k = {v, v + 1, v + row, v + 1, v + row + 1, v + row};
+      if (!layer.from_above) std::reverse(k.begin(), k.end());
+      scene.indices.insert(scene.indices.end(), k.begin(), k.end());
+    }
+  }
+}
+
+LoadedScene sheet(const Layer& above, const Layer& below, const Height& height) {
+  LoadedScene loaded;
+  Scene& scene = loaded.scene;
+  add_layer(above, height, scene);
+  add_layer(below, height, scene);
+  scene.triangle_material.assign(scene.triangle_count(), 0);
+  scene.triangle_object.assign(scene.triangle_count(), 0);
+  scene.materials.push_back({"white", {0.8f, 0.8f, 0.8f}, -1});
+  scene.object_names.push_back("sheet");
+  return loaded;
+}
+
+struct Corner {
+  double x, y, z, u, v;
+};
+struct Written {
+  std::array<Corner, 3> corners;
+  bool double_sided;
+  std::string image;
+};
+
+// Exports the scene and reads what was written with a reader of its own.
+class Exported {
+ public:
+  Exported(const LoadedScene& loaded, bool simplify) {
+    ExportOptions options;
+    options.target = folder_ / "w.gltf";
+    options.simplify = simplify;
+    const auto report = export_world(loaded, options, {}, {});
+    EXPECT_TRUE(report.ok()) << report.status().message();
+    if (!report.ok()) return;
+    const GltfOracle file(options.target);
+    for (const OracleTriangle& t : file.triangles()) {
+      const auto& p = t.attributes.at("POSITION");
+      const auto& uv = t.attributes.at("TEXCOORD_0");
+      const nlohmann::json& material = file.document["materials"][std::size_t(t.material)];
+      const std::size_t texture = material["pbrMetallicRoughness"]["baseColorTexture"]["index"];
+      const std::size_t image = file.document["textures"][texture]["source"];
+      Written w{{}, material.value("doubleSided", false), file.document["images"][image]["uri"]};
+      for (std::size_t k = 0; k < 3; ++k)
+        w.corners[k] = {p[3 * k], p[3 * k + 1], p[3 * k + 2], uv[2 * k], uv[2 * k + 1]};
+      triangles_.push_back(w);
+      if (!images_.contains(w.image)) {
+        auto read = read_image8(folder_ / w.image);
+        EXPECT_TRUE(read.ok()) << read.status().message();
+        images_[w.image] = std::move(*read);
+      }
+    }
+  }
+
+  std::size_t one_sided() const {
+    return std::size_t(std::count_if(triangles_.begin(), triangles_.end(),
+                                     [](const Written& t) { return !t.double_sided; }));
+  }
+  std::size_t count() const { return triangles_.size(); }
+
+  // Returns what a viewer straight above or below a point sees there: the values of all triangles
+  // that are not culled.
+  std::vector<int> seen(double x, double y, bool from_above) const {
+    std::vector<int> values;
+    for (const Written& t : triangles_) {
+      const auto& [a, b, c] = t.corners;
+      const double area = (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
+      if (!t.double_sided && (area > 0) != from_above) continue;
+      const double wb = ((x - a.x) * (c.y - a.y) - (y - a.y) * (c.x - a.x)) / area;
+      const double wc = ((b.x - a.x) * (y - a.y) - (b.y - a.y) * (x - a.x)) / area;
+      const double wa = 1 - wb - wc;
+      if (std::min({wa, wb, wc}) < 0) continue;
+      const Image8& image = images_.at(t.image);
+      const double u = wa * a.u + wb * b.u + wc * c.u, v = 1 - (wa * a.v + wb * b.v + wc * c.v);
+      values.push_back(*image.at(int(u * image.width), int(v * image.height)));
+    }
+    return values;
+  }
+
+ private:
+  TempFolder folder_;
+  std::vector<Written> triangles_;
+  std::map<std::string, Image8> images_;
+};
+
+// Points that lie on no edge of the layers.
+std::vector<std::array<double, 2>> points(double width) {
+  std::vector<std::array<double, 2>> result;
+  for (double y = 0.0613; y < 0.95; y += 0.0971)
+    for (double x = 0.0517; x < width - 0.05; x += 0.0871) result.push_back({x, y});
+  return result;
+}
+
+// Expects that bright light is all that is seen from above, and dim light from below.
+void expect_own_light(const Exported& world, double width) {
+  for (const auto& [x, y] : points(width)) {
+    for (const bool above : {true, false}) {
+      const std::vector<int> seen = world.seen(x, y, above);
+      EXPECT_FALSE(seen.empty()) << "a hole at " << x << ' ' << y << ", above: " << above;
+      for (const int value : seen) {
+        if (above)
+          EXPECT_GT(value, 200) << x << ' ' << y;
+        else
+          EXPECT_LT(value, 80) << x << ' ' << y;
+      }
+    }
+  }
+}
+
+const Layer kBelow{.from_above = false, .light = 1};
+
+TEST(OneSided, EachSideOfASheetShowsItsOwnLight) {
+  const Height flat = [](double, double) { return 0.0; };
+  const Height slanted = [](double x, double y) { return 0.31 * x + 0.77 * y; };
+  const Height curved = [](double x, double) { return 0.2 * std::sin(3 * x); };
+  Layer other = kBelow, coarser = kBelow;
+  other.other_diagonals = true;
+  coarser.cells = 5;
+  for (const bool simplify : {true, false}) {
+    SCOPED_TRACE(simplify ? "simplified" : "fine");
+    expect_own_light(Exported(sheet({}, kBelow, flat), simplify), 1);
+    expect_own_light(Exported(sheet({}, other, flat), simplify), 1);
+    expect_own_light(Exported(sheet({}, coarser, flat), simplify), 1);
+    expect_own_light(Exported(sheet({}, other, slanted), simplify), 1);
+    expect_own_light(Exported(sheet({}, coarser, slanted), simplify), 1);
+    expect_own_light(Exported(sheet({}, kBelow, curved), simplify), 1);
+  }
+}
+
+// Half of the layer above has nothing below it, so it must be seen from below as well.
+TEST(OneSided, WhereASheetHasOneLayerBothSidesShowIt) {
+  const Height flat = [](double, double) { return 0.0; };
+  const Layer wide{.width = 2};
+  const Exported fine(sheet(wide, kBelow, flat), false);
+  expect_own_light(fine, 1);
+  EXPECT_EQ(fine.one_sided(), fine.count() * 2 / 3);
+  const Exported coarse(sheet(wide, kBelow, flat), true);
+  for (const Exported* world : {&fine, &coarse}) {
+    for (const auto& [x, y] : points(2))
+      for (const bool above : {true, false})
+        EXPECT_FALSE(world->seen(x, y, above).empty()) << x << ' ' << y << ' ' << above;
+    EXPECT_EQ(world->seen(1.5217, 0.5131, false).size(), 1u);
+  }
+}
+
+// A plate with a thickness, layers of one orientation, a box on a floor and a room with a ball.
+TEST(OneSided, OtherScenesStayDoubleSided) {
+  const Height flat = [](double, double) { return 0.0; };
+  Layer same = kBelow;
+  same.from_above = true;
+  EXPECT_EQ(Exported(sheet({}, same, flat), true).one_sided(), 0u);
+  LoadedScene plate = sheet({}, kBelow, flat);
+  for (std::size_t i = plate.scene.positions.size() / 2; i < plate.scene.positions.size(); ++i)
+    plate.scene.positions[i].z = -1e-4f;
+  EXPECT_EQ(Exported(plate, true).one_sided(), 0u);
+  EXPECT_EQ(Exported(lit_room(12), true).one_sided(), 0u);
+  const Shape on_floor = together(grid(40, 40, 10, 10), moved(box(3), 1, {4.1, 4.1, 0}));
+  EXPECT_EQ(Exported(lit_scene(on_floor), true).one_sided(), 0u);
+}
+
+// The layers are the same on any number of threads, and in any unit of length.
+TEST(OneSided, ThreadsAndUnitsDoNotMatter) {
+  const Height flat = [](double, double) { return 0.0; };
+  for (const float unit : {1e-6f, 1.0f, 1e6f}) {
+    LoadedScene loaded = sheet({}, {.cells = 7, .from_above = false, .light = 1}, flat);
+    for (Vec3f& p : loaded.scene.positions) p = {p.x * unit, p.y * unit, p.z * unit};
+    MeshView mesh;
+    mesh.positions = loaded.scene.positions;
+    mesh.indices = loaded.scene.indices;
+    const auto charts = make_charts(mesh, {}, {});
+    ASSERT_TRUE(charts.ok());
+    const ChartedMesh fine(loaded.scene.indices, *charts);
+    for (const int threads : {1, 2, 5}) {
+      Context context;
+      context.threads = threads;
+      EXPECT_EQ(one_sided_triangles(loaded.scene, *charts, fine.view(), context),
+                std::vector<bool>(loaded.scene.triangle_count(), true))
+          << unit;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace atlas::test
