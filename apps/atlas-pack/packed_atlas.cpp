@@ -69,6 +69,10 @@ std::string to_csv(const PackedAtlas& atlas) {
   return text;
 }
 
+std::string name_in_json(const std::string& name) {
+  return Json(name).dump(-1, ' ', false, Json::error_handler_t::replace);
+}
+
 std::string to_json(const PackedAtlas& atlas, DataFormat format, std::uint32_t page) {
   Json root;
   Json& frames = root["frames"];

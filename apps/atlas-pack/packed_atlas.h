@@ -37,6 +37,10 @@ std::string to_csv(const PackedAtlas& atlas);
 // Returns the name of the file that holds the frames of a page, from that of the page's image.
 std::string data_of_page(const std::string& image);
 
+// Returns a name as JSON writes it, in quotes. Bytes that are not UTF-8 are replaced, so different
+// names may become equal.
+std::string name_in_json(const std::string& name);
+
 // Returns the layout as JSON that game tools read. For the page kAllPages it lists all pages, each
 // frame with its page. Otherwise it names the data of the other pages, if there are any.
 inline constexpr std::uint32_t kAllPages = 0xffffffffu;

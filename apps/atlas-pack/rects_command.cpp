@@ -207,9 +207,9 @@ Status read_json(const PackCommand& c, const std::string& text, std::vector<Pack
 // Refuses equal names if the output is a JSON object, which holds only one item per name.
 Status check_names(const PackCommand& c, const std::vector<PackedItem>& items) {
   if (lower_extension(c.output) != ".json" || c.format != DataFormat::hash) return {};
-  std::set<std::string_view> names;
+  std::set<std::string> names;
   for (const PackedItem& item : items)
-    if (!names.insert(item.name).second)
+    if (!names.insert(name_in_json(item.name)).second)
       return {ErrorCode::bad_input,
               fmt::format("{}: two items are called '{}' (name them apart, or use --data array)",
                           c.input.string(), item.name)};

@@ -80,6 +80,8 @@ Result<std::vector<Sprite>> read_sprites(const PackCommand& c, const Context& co
     else if (!it->is_regular_file(unknown))
       context.say(fmt::format("{}: left out, no file to read (a broken link, a pipe or a device)",
                               it->path().string()));
+    else if (it->path().filename().string().starts_with("._"))
+      context.say(fmt::format("{}: left out, what macOS keeps beside a file", it->path().string()));
     else if (is_image(it->path()))
       paths.push_back(it->path());
     else
@@ -92,6 +94,7 @@ Result<std::vector<Sprite>> read_sprites(const PackCommand& c, const Context& co
         fmt::format("{}: holds no image (png, jpg, tga, bmp, tif, gif or webp)", c.input.string()));
   std::sort(paths.begin(), paths.end());
   std::vector<Sprite> sprites;
+  std::set<std::string> names;
   for (std::size_t i = 0; i < paths.size(); ++i) {
     if (context.cancelled()) return Status::cancelled();
     context.report("read", double(i) / double(paths.size()));
@@ -99,6 +102,12 @@ Result<std::vector<Sprite>> read_sprites(const PackCommand& c, const Context& co
     if (!image.ok()) return image.status();
     Sprite s;
     s.name = fs::relative(paths[i], c.input).generic_string();
+    if (!names.insert(name_in_json(s.name)).second)
+      return Status(
+          ErrorCode::bad_input,
+          fmt::format("{}: its name is not UTF-8, and another image has the same name once "
+                      "such bytes are replaced (rename one)",
+                      paths[i].string()));
     s.source = {image->width, image->height};
     s.image = to_rgba(*image);
     if (c.trim) trim(s, c.trim_threshold);

@@ -204,6 +204,33 @@ TEST_F(AtlasPack, SpritesOfAnyKindAreCutToWhatIsSeen) {
   EXPECT_EQ(frames("--no-trim")["sub/seen.png"]["frame"]["h"], 8);
 }
 
+// Bytes that are not UTF-8 are replaced in JSON, where two names could become one.
+TEST_F(AtlasPack, NamesThatJsonCannotTellApartAreRefused) {
+  fs::create_directories(dir_ / "in");
+  ASSERT_TRUE(write_png(dir_ / "in/b\xe9.png", Image8(4, 4, 3, 9), {}).ok());
+  EXPECT_EQ(run("images in -o s").exit_code, 0);
+  ASSERT_TRUE(write_png(dir_ / "in/b\xe8.png", Image8(5, 5, 3, 9), {}).ok());
+  const RunResult images = run("images in -o s");
+  EXPECT_EQ(images.exit_code, 1);
+  EXPECT_TRUE(holds(images.output, "its name is not UTF-8, and another image")) << images.output;
+  write("bytes.csv", "b\xe9,3,4\nb\xe8,3,4\n");
+  EXPECT_EQ(run("rects bytes.csv -o q.csv").exit_code, 0);
+  const RunResult rects = run("rects bytes.csv -o q.json");
+  EXPECT_EQ(rects.exit_code, 1);
+  EXPECT_TRUE(holds(rects.output, "two items are called")) << rects.output;
+}
+
+// The Finder keeps attributes of a file on foreign disks in a second one, which is no image.
+TEST_F(AtlasPack, CompanionFilesOfMacOsAreLeftOut) {
+  fs::create_directories(dir_ / "in");
+  ASSERT_TRUE(write_png(dir_ / "in/a.png", Image8(4, 4, 3, 9), {}).ok());
+  write("in/._a.png", "attributes");
+  const RunResult r = run("images in -o s");
+  EXPECT_EQ(r.exit_code, 0) << r.output;
+  EXPECT_TRUE(holds(r.output, "in/._a.png: left out, what macOS keeps beside a file")) << r.output;
+  EXPECT_EQ(json::parse(read("s.json"))["frames"].size(), 1u);
+}
+
 TEST_F(AtlasPack, SpritesOfOneLookAreStoredOnceAndPagesHoldTheirOwn) {
   fs::create_directories(dir_ / "in");
   for (const auto& [name, level] : {std::pair("c", 9), {"b", 9}, {"a", 40}})
