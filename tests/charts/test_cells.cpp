@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <vector>
 
 #include "libatlas/charts/cells/cells.h"
@@ -92,6 +93,24 @@ TEST(Cells, AreMoreWhereTheSurfaceHasHandles) {
   EXPECT_GT(without, 70);
   EXPECT_LT(with, 0.65 * without);
   EXPECT_GT(with, 30);
+}
+
+// Of n strips as long as all are wide, each at a right angle to the next, with one quad each.
+Shape corrugated_sheet(int n) {
+  Shape sheet = grid(n, 1, n, n);
+  for (Vec3f& p : sheet.positions) {
+    const int strip = static_cast<int>(std::lround(p.x));
+    p.x = float((strip + 1) / 2);
+    p.z = float(strip % 4 == 1 || strip % 4 == 2);
+  }
+  return sheet;
+}
+
+// Each quad of a corrugated sheet became a cell, although cells unroll across folds.
+TEST(Cells, AreBoundedInNumberWhereASheetUnrolls) {
+  const Topology topology = topology_of(corrugated_sheet(1600));
+  EXPECT_LE(grow_cells({topology, plan_cells(topology, {})}, {}, {}).count,
+            CellOptions{}.max_cells_per_piece);
 }
 
 TEST(Teeth, ARaggedBorderIsDrawnStraighter) {

@@ -17,7 +17,7 @@ struct CellOptions {
   std::uint32_t cells_of_small_mesh = 146;
   std::uint32_t max_cells_per_piece = 600;  // upper limit, however fine a piece is
   // More cells are added, beyond the numbers above, until the normals of all grains lie within this
-  // angle of that of their cell's seed.
+  // angle of that of their cell's seed. In pieces that unroll, max_cells_per_piece still holds.
   double max_lean_degrees = 55;
   std::size_t mesh_triangles = 0;  // of the whole mesh; 0: the topology's
   // Where the first seed lies in each piece, in [0, 1). Each value gives other cells, equally good.

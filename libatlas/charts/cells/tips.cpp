@@ -1,6 +1,7 @@
 #include "libatlas/charts/cells/tips.h"
 
 #include <cmath>
+#include <unordered_set>
 
 #include "libatlas/core/glm_bridge.h"
 
@@ -16,6 +17,17 @@ constexpr std::size_t kFewTips = 2, kTrianglesATip = 200;
 struct Piece {
   std::size_t triangles = 0, tips = 0, others = 0;
   double rest = 0;  // the sum over all other vertices
+
+  // Counts a vertex in. Returns whether it is a tip.
+  bool take(double defect) {
+    if (defect > kTip) {
+      ++tips;
+      return true;
+    }
+    rest += defect;
+    ++others;
+    return false;
+  }
 
   bool curved() const {
     return tips > kFewTips + triangles / kTrianglesATip ||
@@ -96,18 +108,24 @@ std::vector<std::uint32_t> find_tips(const Topology& topology) {
     for (std::uint32_t h = 3 * t; h < 3 * t + 3 && !piece.curved(); ++h) {
       if (seen[topology.corner_vertex[h]]) continue;
       seen[topology.corner_vertex[h]] = 1;
-      const double defect = std::abs(angle_defect(topology, h));
-      if (defect > kTip) {
-        tips.push_back(h);
-        ++piece.tips;
-      } else {
-        piece.rest += defect;
-        ++piece.others;
-      }
+      if (piece.take(std::abs(angle_defect(topology, h)))) tips.push_back(h);
     }
   }
   std::erase_if(tips, [&](std::uint32_t h) { return pieces[topology.component[h / 3]].curved(); });
   return tips;
+}
+
+bool developable(const Topology& topology, std::span<const std::uint32_t> triangles) {
+  Piece piece{triangles.size()};
+  std::unordered_set<std::uint32_t> seen;
+  for (const std::uint32_t t : triangles) {
+    for (std::uint32_t h = 3 * t; h < 3 * t + 3; ++h) {
+      if (!seen.insert(topology.corner_vertex[h]).second) continue;
+      piece.take(std::abs(angle_defect(topology, h)));
+      if (piece.curved()) return false;
+    }
+  }
+  return true;
 }
 
 void divide_at_tips(const Topology& topology, const std::vector<std::uint32_t>& tips,

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "libatlas/charts/cells/cells.h"
@@ -18,6 +19,10 @@ double angle_defect(const Topology& topology, std::uint32_t h);
 // starting at a vertex with an angle defect, in pieces where nearly all other vertices have none.
 // Linear in the number of triangles; a curved piece is given up after a few vertices.
 std::vector<std::uint32_t> find_tips(const Topology& topology);
+
+// Whether all vertices of these triangles but a few tips have no angle defect. The triangles are a
+// piece.
+bool developable(const Topology& topology, std::span<const std::uint32_t> triangles);
 
 // Divides the cells that surround a tip in two. What unrolls has tips on its border only.
 void divide_at_tips(const Topology& topology, const std::vector<std::uint32_t>& tips, Cells& cells);
