@@ -84,6 +84,17 @@ constexpr std::uint32_t kFastTrianglesPerCell = 250, kFastCellsOfSmallMesh = 60;
 constexpr double kSomeFaces = 0.1, kAllFaces = 0.93;
 constexpr std::size_t kFewCharts = 3;
 
+// A piece that came out in more than kSomeCharts charts is cut again, with the cells that it would
+// have alone, if these are kMuchFiner times as many. These charts are taken if they are at most
+// kMuchBetter of the others: cells of few triangles make ragged charts, and in a truck of small
+// parts a tie would be lost in later steps. A hundred cables of eight sides came out in 269 charts
+// instead of 808, in three times the time, and 60 robots' parts in 4 % fewer, for 6 % more time.
+// With kFewCharts in place of kSomeCharts, a cabin's many boxes took 60 % more time instead of
+// 17 %, for 2 % fewer charts.
+constexpr std::size_t kSomeCharts = 4;
+constexpr std::uint32_t kMuchFiner = 2;
+constexpr double kMuchBetter = 0.9;
+
 // The cost of a piece's charts; less is better.
 struct PieceCost {
   std::size_t charts = 0;
@@ -109,15 +120,29 @@ std::vector<PieceCost> piece_costs(const Cut& cut) {
   return costs;
 }
 
+// Returns the costs of the pieces over all cuts, each of which leaves out what another one takes.
+std::vector<PieceCost> chosen_costs(const std::vector<Cut>& cuts) {
+  std::vector<PieceCost> least;
+  for (const Cut& cut : cuts) {
+    const std::vector<PieceCost> costs = piece_costs(cut);
+    least.resize(costs.size());
+    for (std::size_t k = 0; k < costs.size(); ++k) {
+      if (!cut.left_out[k]) least[k] = costs[k];
+    }
+  }
+  return least;
+}
+
 // Which pieces are left out where cells ignore faces, and where faces bound them.
 struct Ways {
   std::vector<std::uint8_t> plain, walled;
 
-  Ways(const Faces& faces, ChartPreset preset) {
+  Ways(const CellPlan& plan, const Faces& faces, ChartPreset preset) {
     const double least = preset == ChartPreset::fast ? kAllFaces : kSomeFaces;
     for (std::size_t k = 0; k < faces.share.size(); ++k) {
-      plain.push_back(faces.share[k] >= kAllFaces);
-      walled.push_back(faces.share[k] < least);
+      const bool neither = plan.cells[k] == 0;
+      plain.push_back(neither || faces.share[k] >= kAllFaces);
+      walled.push_back(neither || faces.share[k] < least);
     }
   }
 
@@ -129,12 +154,14 @@ struct Ways {
   }
 };
 
-// Leaves out the worse result of pieces that were cut in both ways.
-void choose(Cut& a, Cut& b) {
+// Leaves out the worse result of pieces that both cuts take. That of the second one is worse if it
+// has more than this share of the first one's charts.
+void choose(Cut& a, Cut& b, double share = 1) {
   const std::vector<PieceCost> cost_a = piece_costs(a), cost_b = piece_costs(b);
   for (std::size_t k = 0; k < cost_a.size(); ++k) {
     if (a.left_out[k] || b.left_out[k]) continue;
-    (cost_b[k] < cost_a[k] ? a : b).left_out[k] = 1;
+    const bool fewer = double(cost_b[k].charts) <= share * double(cost_a[k].charts);
+    (fewer && cost_b[k] < cost_a[k] ? a : b).left_out[k] = 1;
   }
 }
 
@@ -175,19 +202,55 @@ class Segmenter {
     Stopwatch watch(own_cpu_seconds);
     const CellOptions options = cell_options();
     const CellPlan plan = plan_cells(topology_, options);
-    const Faces faces = find_faces(topology_, plan);
-    Ways ways(faces, options_.preset);
     result_.timing.cells_cpu += watch.lap();
     std::vector<Cut> cuts;
+    cut_in_both_ways(plan, cuts);
+    if (options_.preset != ChartPreset::fast && !(cone_ > 0)) cut_finer(plan, cuts);
+    if (context_.cancelled()) return;
+    for (const Cut& made : cuts) take(made);
+  }
+
+  // Cuts pieces with many charts again, with the cells that each would have if it were the whole
+  // mesh, and keeps the better charts. A mesh of many thin tubes has cells that wrap around them.
+  void cut_finer(const CellPlan& plan, std::vector<Cut>& cuts) {
+    if (topology_.component_count == 1 && topology_.whole_triangles <= topology_.triangle_count())
+      return;
+    Stopwatch watch(own_cpu_seconds);
+    const std::vector<PieceCost> costs = chosen_costs(cuts);
+    const auto many = [](const PieceCost& cost) { return cost.charts > kSomeCharts; };
+    if (std::none_of(costs.begin(), costs.end(), many)) return;
+    CellOptions alone = cell_options();
+    alone.each_piece_alone = true;
+    CellPlan finer = plan_cells(topology_, alone);
+    for (std::size_t k = 0; k < costs.size(); ++k) {
+      if (many(costs[k]) && finer.cells[k] >= kMuchFiner * plan.cells[k]) continue;
+      finer.cells[k] = 0;
+    }
+    result_.timing.cells_cpu += watch.lap();
+    const std::size_t coarse = cuts.size();
+    cut_in_both_ways(finer, cuts);
+    if (context_.cancelled()) return;
+    for (std::size_t i = 0; i < coarse; ++i) {
+      for (std::size_t j = coarse; j < cuts.size(); ++j) choose(cuts[i], cuts[j], kMuchBetter);
+    }
+  }
+
+  // Adds up to two cuts with that number of cells, each of which leaves out the pieces that the
+  // other one takes.
+  void cut_in_both_ways(const CellPlan& plan, std::vector<Cut>& cuts) {
+    Stopwatch watch(own_cpu_seconds);
+    const Faces faces = find_faces(topology_, plan);
+    Ways ways(plan, faces, options_.preset);
+    result_.timing.cells_cpu += watch.lap();
+    const std::size_t first = cuts.size();
     for (const bool walled : {false, true}) {
-      if (walled && !cuts.empty()) ways.spare(piece_costs(cuts[0]));
+      if (walled && cuts.size() > first) ways.spare(piece_costs(cuts[first]));
       const std::span<const std::uint8_t> left_out = walled ? ways.walled : ways.plain;
       if (std::find(left_out.begin(), left_out.end(), 0) == left_out.end()) continue;
       cuts.push_back(cut({topology_, plan, walled ? &faces : nullptr, left_out}));
       if (context_.cancelled()) return;
     }
-    if (cuts.size() == 2) choose(cuts[0], cuts[1]);
-    for (const Cut& made : cuts) take(made);
+    if (cuts.size() == first + 2) choose(cuts[first], cuts[first + 1]);
   }
 
   void take(const Cut& made) {

@@ -163,6 +163,23 @@ TEST(Charts, NeedlesOfCadPartsTakeFewCharts) {
   }
 }
 
+// Cells of a large mesh wrapped around thin tubes, which came out in seven times as many charts.
+TEST(Charts, TubesInABundleTakeAboutAsManyAsEachAlone) {
+  Shape bundle;
+  std::size_t alone = 0;
+  for (int i = 0; i < 30; ++i) {
+    Shape tube = cylinder(4, 40, 0.1, 10);
+    for (Vec3f& p : tube.positions) {
+      const double along = 0.5 * p.z + 0.7 * i;
+      p.x += float(std::sin(along) + 3 * i);
+      p.y += float(std::cos(1.3 * along));
+    }
+    alone += checked_charts(Mesh(tube), 0).charts.size();
+    bundle = i == 0 ? tube : together(bundle, tube);
+  }
+  EXPECT_LE(double(checked_charts(Mesh(bundle), 0).charts.size()), 1.3 * double(alone));
+}
+
 TEST(Charts, ScanNoiseHardlyAddsCharts) {
   const Shape smooth = icosphere(5);
   const ChartSet calm = charts_of(Mesh(smooth));

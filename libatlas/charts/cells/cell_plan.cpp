@@ -13,19 +13,28 @@ constexpr std::uint32_t kLeastPerCell = 3;
 // came out in half as many charts again (35 generated meshes).
 constexpr std::size_t kCellsAHandle = 10, kLeastTriangles = 40;
 
+// In a mesh of that many triangles.
+std::uint32_t triangles_per_cell(std::size_t triangles, const CellOptions& options) {
+  return std::clamp(static_cast<std::uint32_t>(triangles / options.cells_of_small_mesh),
+                    std::min(kLeastPerCell, options.triangles_per_cell),
+                    options.triangles_per_cell);
+}
+
 class CellBudget {
  public:
   CellBudget(const Topology& topology, const CellOptions& options)
       : topology_(topology),
-        most_(options.max_cells_per_piece),
+        options_(options),
         triangles_per_cell_(triangles_per_cell(topology, options)),
         seen_in_(topology.points.size(), kNoIndex) {}
 
   std::uint32_t of(std::size_t handles, std::size_t n) const {
-    const std::size_t least = n / triangles_per_cell_;
+    const std::size_t least =
+        n / (options_.each_piece_alone ? triangles_per_cell(n, options_) : triangles_per_cell_);
     const std::size_t most = std::max(least, n / kLeastTriangles);
     const std::size_t wanted = least + kCellsAHandle * handles;
-    return static_cast<std::uint32_t>(std::clamp<std::size_t>(std::min(wanted, most), 1, most_));
+    return static_cast<std::uint32_t>(
+        std::clamp<std::size_t>(std::min(wanted, most), 1, options_.max_cells_per_piece));
   }
 
   // Returns 2 - Euler characteristic: each handle counts two, each boundary loop one.
@@ -43,17 +52,15 @@ class CellBudget {
 
  private:
   const Topology& topology_;
-  std::uint32_t most_, triangles_per_cell_;
+  const CellOptions& options_;
+  std::uint32_t triangles_per_cell_;
   std::vector<std::uint32_t> seen_in_;  // one per vertex: the last piece that it was found in
 };
 
 }  // namespace
 
 std::uint32_t triangles_per_cell(const Topology& topology, const CellOptions& options) {
-  const std::size_t triangles = std::max(options.mesh_triangles, topology.triangle_count());
-  return std::clamp(static_cast<std::uint32_t>(triangles / options.cells_of_small_mesh),
-                    std::min(kLeastPerCell, options.triangles_per_cell),
-                    options.triangles_per_cell);
+  return triangles_per_cell(std::max(options.mesh_triangles, topology.triangle_count()), options);
 }
 
 CellPlan plan_cells(const Topology& topology, const CellOptions& options) {

@@ -15,6 +15,7 @@ struct CellOptions {
   // whose charts would have few to choose from.
   std::uint32_t triangles_per_cell = 80;
   std::uint32_t cells_of_small_mesh = 146;
+  bool each_piece_alone = false;            // as if each piece were a mesh of its own
   std::uint32_t max_cells_per_piece = 600;  // upper limit, however fine a piece is
   // More cells are added, beyond the numbers above, until the normals of all grains lie within this
   // angle of that of their cell's seed. In pieces that unroll, max_cells_per_piece still holds.
@@ -26,7 +27,7 @@ struct CellOptions {
 
 struct CellPlan {
   PieceList pieces;
-  std::vector<std::uint32_t> cells;   // one per piece: its number of cells
+  std::vector<std::uint32_t> cells;   // one per piece: its number of cells; 0: it is left out
   std::vector<std::uint8_t> pierced;  // one per piece: has handles, or holes
 };
 

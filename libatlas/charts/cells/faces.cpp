@@ -49,7 +49,7 @@ class FaceFinder {
 
   // Returns the share of the piece's area that faces cover.
   double find_in(std::span<const std::uint32_t> piece, std::uint32_t cells) {
-    if (piece.size() > kManyTriangles) return 0;
+    if (piece.size() > kManyTriangles || cells == 0) return 0;
     planes_.clear();
     triangles_.clear();
     double area = 0, covered = 0;
