@@ -151,21 +151,9 @@ class Export {
     return {};
   }
 
-  TextureOptions texture_options() const {
-    TextureOptions texture;
-    texture.texel = plan_.texel_metres / scene_.metres_per_unit;
-    texture.follow_textures = options_.follow_textures;
-    texture.texture_sampling = texture_sampling(options_);
-    texture.threshold = options_.threshold;
-    if (options_.exr) texture.brightest = report_.luminance.maximum;
-    texture.min_side = options_.min_side;
-    texture.max_side = options_.atlas_size - 2 * gutter_pad(options_.mip_levels);
-    return texture;
-  }
-
   Status cut_long_charts() {
     const Context& context = record_.begin("tiling");
-    const TextureOptions texture = texture_options();
+    const TextureOptions texture = texture_options(plan_, report_, options_);
     const std::vector<double> densities = wanted_densities(*light_, texture, context);
     if (context.cancelled()) return Status::cancelled();
     const std::size_t before = charts_.charts.size();
@@ -181,7 +169,7 @@ class Export {
 
   Status size_textures() {
     const Context& context = record_.begin("downsizing");
-    const TextureOptions texture = texture_options();
+    const TextureOptions texture = texture_options(plan_, report_, options_);
     Result<TextureResult> sized = size_chart_textures(*light_, texture, context);
     if (!sized.ok()) return sized.status();
     const PagesOfCharts pages{view_of(scene_), options_.charts.max_stretch,
@@ -245,7 +233,8 @@ class Export {
     report_.utilization = layout_.utilization;
     report_.uv_utilization = layout_.uv_utilization;
     report_.outlines = layout_.outlines;
-    if (plan_.bake) report_.packed_texel = packed_texel();
+    if (plan_.bake)
+      report_.packed_texel = packed_texel(charts_, full_densities_, layout_.scale, report_.texel);
     std::string quality = fmt::format("scale {:.3f}, {:.0f} % used by charts", layout_.scale,
                                       100 * layout_.uv_utilization);
     if (charts_.charts.size() > uncut)
@@ -260,17 +249,6 @@ class Export {
       }
     }
     return {};
-  }
-
-  // Finer textures of charts count as the texel asked for.
-  double packed_texel() const {
-    double area = 0, texels = 0;
-    for (std::size_t c = 0; c < charts_.charts.size(); ++c) {
-      const double density = std::min(full_densities_[c].x, 1 / report_.texel) * layout_.scale;
-      area += charts_.charts[c].distortion.surface_area;
-      texels += charts_.charts[c].distortion.surface_area * density * density;
-    }
-    return texels > 0 ? std::sqrt(area / texels) : 0;
   }
 
   Status bake() {

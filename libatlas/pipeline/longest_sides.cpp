@@ -61,4 +61,16 @@ std::vector<double> longest_sides(const ChartSet& charts, std::span<const double
   return limits;
 }
 
+double packed_texel(const ChartSet& charts, std::span<const Vec2d> densities, double scale,
+                    double texel) {
+  double area = 0, texels = 0;
+  for (std::size_t c = 0; c < charts.charts.size(); ++c) {
+    const double surface = charts.charts[c].distortion.surface_area;
+    const double density = std::min(densities[c].x, 1 / texel) * scale;
+    area += surface;
+    texels += surface * density * density;
+  }
+  return texels > 0 ? std::sqrt(area / texels) : 0;
+}
+
 }  // namespace atlas

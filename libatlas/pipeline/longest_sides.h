@@ -1,4 +1,4 @@
-// Internal: determines from which length on a chart is cut for the sake of the others.
+// Internal: how long charts may be for the pages, and how long texels become on these.
 #pragma once
 
 #include <span>
@@ -21,5 +21,11 @@ struct PageBudget {
 // 0.87. `densities` are the texels per unit that each chart wants.
 std::vector<double> longest_sides(const ChartSet& charts, std::span<const double> densities,
                                   const PageBudget& budget);
+
+// Returns the mean length of a texel on the pages before downsizing, in scene units, where charts
+// with the given full densities are packed at a common scale; 0 without area. Densities above that
+// of `texel`, the length asked for, count as that.
+double packed_texel(const ChartSet& charts, std::span<const Vec2d> densities, double scale,
+                    double texel);
 
 }  // namespace atlas

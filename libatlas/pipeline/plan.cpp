@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "libatlas/bake/placement.h"
 #include "libatlas/core/atomic_file.h"
 #include "libatlas/image/image_io.h"
 #include "libatlas/pipeline/bake_pages.h"
@@ -179,6 +180,19 @@ double texture_sampling(const ExportOptions& options) {
   // own density becomes blurred.
   constexpr double kExceeding = 1.5;
   return options.texel_metres > 0 ? 1 : kExceeding;
+}
+
+TextureOptions texture_options(const ExportPlan& plan, const ExportReport& report,
+                               const ExportOptions& options) {
+  TextureOptions texture;
+  texture.texel = plan.texel_metres / report.metres_per_unit;
+  texture.follow_textures = options.follow_textures;
+  texture.texture_sampling = texture_sampling(options);
+  texture.threshold = options.threshold;
+  if (options.exr) texture.brightest = report.luminance.maximum;
+  texture.min_side = options.min_side;
+  texture.max_side = options.atlas_size - 2 * gutter_pad(options.mip_levels);
+  return texture;
 }
 
 ExportPlan make_plan(const Scene& scene, const ExportOptions& options) {

@@ -5,6 +5,7 @@
 #include "libatlas/report/export_plan.h"
 #include "libatlas/report/export_report.h"
 #include "libatlas/scene/reader.h"
+#include "libatlas/texture/chart_textures.h"
 
 namespace atlas {
 
@@ -14,6 +15,11 @@ ExportPlan make_plan(const Scene& scene, const ExportOptions& options);
 
 // Returns how many texels along a side the atlas has for each texel of a diffuse texture.
 double texture_sampling(const ExportOptions& options);
+
+// Returns the options of textures. The report tells the unit of length and, for pages that hold
+// light above display white, the brightest light.
+TextureOptions texture_options(const ExportPlan& plan, const ExportReport& report,
+                               const ExportOptions& options);
 
 // Returns the report of an export that has not begun. It describes the scene and the plan.
 ExportReport planned_report(const LoadedScene& loaded, const ExportPlan& plan,
