@@ -19,8 +19,8 @@ class StripBeam {
   StripBeam(std::span<const Extent> items, std::int32_t width, bool allow_rotation);
 
   struct Limits {
-    std::int32_t height = 0;     // maximum height of the layout
-    std::size_t states = 8;      // number of partial layouts that are kept
+    std::int32_t height = 0;  // maximum height of the layout
+    std::size_t states = 8;   // number of partial layouts that are kept
     // How much large items are preferred: an exponent of their area, a multiple of 1/2.
     double large_first = 3;
     std::function<bool()> stop;  // called after every item; true ends the search; may be empty
