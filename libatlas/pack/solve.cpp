@@ -28,7 +28,7 @@ SearchLimits limits_for(const Problem& problem, const PackOptions& options, bool
   SearchLimits limits;
   limits.seed = options.seed;
   // If items may not be turned, beam searches seldom find a better layout than annealing.
-  const bool beams = strip && options.allow_rotation;
+  const bool beams = strip && problem.allow_rotation;
   if (options.preset == PackPreset::best) {
     limits.layouts = options.effort;
     limits.seconds = options.time_budget;

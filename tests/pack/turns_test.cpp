@@ -128,5 +128,32 @@ TEST(TurnedStrips, AreTheSameForEveryThreadCount) {
   }
 }
 
+// Cropped pages of all presets, of one page and of several, with the largest page of each set.
+TEST(TurnedPages, AreNeverLargerThanWithoutTurns) {
+  test::Noise noise{25};
+  for (int round = 0; round < 10; ++round) {
+    const std::vector<Extent> items =
+        round % 2 ? make_bars(noise, {std::size_t(noise.in(10, 40)), {20, 150}, {2, 30}, 0})
+                  : test::log_normal_rects(std::size_t(noise.in(10, 40)), noise.next());
+    std::int32_t longest = 0;
+    for (const Extent& e : items) longest = std::max({longest, e.width, e.height});
+    PackOptions o;
+    o.crop = true;
+    o.preset = round % 3 ? PackPreset::standard : PackPreset::fast;
+    o.page = round % 4 < 2 ? Extent{4096, 4096} : Extent{longest, longest};
+    o.square = round % 5 == 4;
+    const auto texels = [&](bool turn) {
+      o.allow_rotation = turn;
+      const Result<PackResult> r = pack_rects(items, o, {});
+      EXPECT_TRUE(r.ok() && r->unplaced.empty());
+      EXPECT_EQ(test::check_layout(items, r->placements, r->pages, o), "");
+      std::int64_t sum = 0;
+      for (const Extent& page : r->pages) sum += page.area();
+      return std::pair(r->pages.size(), sum);
+    };
+    EXPECT_LE(texels(true), texels(false)) << round;
+  }
+}
+
 }  // namespace
 }  // namespace atlas
