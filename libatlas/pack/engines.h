@@ -38,6 +38,12 @@ struct SearchLimits {
   // wall time.
   std::uint64_t beam_states = 0;
   double beam_seconds = 0;
+  // For strips whose items may be turned: the maximum number of layouts that are tried without
+  // turning any, and the wall time for them.
+  std::uint64_t unturned_layouts = 0;
+  double unturned_seconds = 0;
+  // For strips: a layout that is no higher than this is low enough.
+  std::int64_t enough_height = 0;
 };
 
 // Returns the limits of `standard` for this number of items on pages.
@@ -69,7 +75,8 @@ Layout search_pages(const Problem& problem, const SearchLimits& limits, const Co
                     PackResult& result);
 
 // Local search for a low strip. It changes the order of the items by swaps and moves, with
-// simulated annealing. If limits.beam_states is not 0, beam searches below the height found follow.
+// simulated annealing. Items that may be turned are also tried all lying, all standing and
+// unturned. If limits.beam_states is not 0, beam searches below the height found follow.
 Layout search_strip(const Problem& problem, const SearchLimits& limits, const Context& context,
                     PackResult& result);
 

@@ -3,6 +3,45 @@
 #include <algorithm>
 
 namespace atlas::pack {
+namespace {
+
+// Items are looked at in blocks of this many, because compilers make vector instructions of the
+// tests below: their loops have a fixed length and no branches.
+constexpr std::size_t kBlock = 16;
+
+// If fewer items than this remain, looking at one after the other is faster.
+constexpr std::size_t kFewItems = 64;
+
+// These tests say whether any item of a block may be chosen: the first item needs only fit. A
+// better one is as wide as the gap or as high as a wall, then as wide as the gap.
+struct AnyFits {
+  std::int32_t width, room;
+  bool operator()(const std::int32_t* w, const std::int32_t* h) const {
+    std::int32_t any = 0;
+    for (std::size_t k = 0; k < kBlock; ++k)
+      any |= (w[k] <= width ? -1 : 0) & (h[k] <= room ? -1 : 0);
+    return any;
+  }
+};
+struct AnyMatches {
+  std::int32_t width, tall, low;
+  bool operator()(const std::int32_t* w, const std::int32_t* h) const {
+    std::int32_t any = 0;
+    for (std::size_t k = 0; k < kBlock; ++k)
+      any |= (w[k] == width ? -1 : 0) | (h[k] == tall ? -1 : 0) | (h[k] == low ? -1 : 0);
+    return any;
+  }
+};
+struct AnyAsWide {
+  std::int32_t width;
+  bool operator()(const std::int32_t* w, const std::int32_t*) const {
+    std::int32_t any = 0;
+    for (std::size_t k = 0; k < kBlock; ++k) any |= w[k] == width ? -1 : 0;
+    return any;
+  }
+};
+
+}  // namespace
 
 std::size_t GapFill::lowest_segment() const {
   std::size_t lowest = 0;
@@ -11,7 +50,17 @@ std::size_t GapFill::lowest_segment() const {
   return lowest;
 }
 
-GapFill::Choice GapFill::choose(std::span<const std::uint32_t> sequence, std::size_t gap) const {
+// Returns the beginning of the first block, from i on, of which an item passes the test in an
+// allowed direction, or of the last few blocks.
+template <class Test>
+std::size_t GapFill::next_block(std::size_t i, Test any) const {
+  const std::int32_t *w = widths_.data(), *h = heights_.data();
+  for (; i + kFewItems <= widths_.size(); i += kBlock)
+    if (any(w + i, h + i) || (allow_rotation_ && any(h + i, w + i))) break;
+  return i;
+}
+
+GapFill::Choice GapFill::choose(std::size_t gap) const {
   const Segment s = skyline_[gap];
   const std::int32_t left = (gap > 0 ? skyline_[gap - 1].y : page_.height) - s.y;
   const std::int32_t right = (gap + 1 < skyline_.size() ? skyline_[gap + 1].y : page_.height) - s.y;
@@ -36,10 +85,17 @@ GapFill::Choice GapFill::choose(std::span<const std::uint32_t> sequence, std::si
     }
     if (score > best.score) best = {score, i, turned, other != tall_right};
   };
-  for (std::size_t i = 0; i < sequence.size() && best.score < 8; ++i) {
-    const Extent item = items_[sequence[i]];
-    consider(item, i, false);
-    if (allow_rotation_ && item.width != item.height) consider({item.height, item.width}, i, true);
+  for (std::size_t i = 0; i < widths_.size() && best.score < 8;) {
+    i = best.score < 0   ? next_block(i, AnyFits{s.width, room})
+        : best.score < 3 ? next_block(i, AnyMatches{s.width, tall, low})
+                         : next_block(i, AnyAsWide{s.width});
+    const std::size_t end = i + kFewItems <= widths_.size() ? i + kBlock : widths_.size();
+    for (; i < end && best.score < 8; ++i) {
+      const Extent item{widths_[i], heights_[i]};
+      consider(item, i, false);
+      if (allow_rotation_ && item.width != item.height)
+        consider({item.height, item.width}, i, true);
+    }
   }
   return best;
 }
@@ -89,10 +145,16 @@ std::int32_t GapFill::fill(std::vector<std::uint32_t>& sequence) {
   skyline_.assign(1, {0, 0, page_.width});
   placed_area_ = 0;
   std::int32_t used = 0;
+  widths_.clear();
+  heights_.clear();
+  for (const std::uint32_t id : sequence) {
+    widths_.push_back(items_[id].width);
+    heights_.push_back(items_[id].height);
+  }
   while (!sequence.empty()) {
     const std::size_t gap = lowest_segment();
     if (skyline_[gap].y >= page_.height) break;
-    const Choice c = choose(sequence, gap);
+    const Choice c = choose(gap);
     if (c.score < 0) {
       raise(gap);
       continue;
@@ -105,7 +167,10 @@ std::int32_t GapFill::fill(std::vector<std::uint32_t>& sequence) {
     placed_area_ += size.area();
     used = std::max(used, s.y + size.height);
     put(gap, size, c.at_right);
-    sequence.erase(sequence.begin() + static_cast<std::ptrdiff_t>(c.index));
+    const auto index = static_cast<std::ptrdiff_t>(c.index);
+    sequence.erase(sequence.begin() + index);
+    widths_.erase(widths_.begin() + index);
+    heights_.erase(heights_.begin() + index);
   }
   return used;
 }

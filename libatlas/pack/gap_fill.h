@@ -41,7 +41,9 @@ class GapFill {
     bool rotated = false, at_right = false;
   };
   std::size_t lowest_segment() const;
-  Choice choose(std::span<const std::uint32_t> sequence, std::size_t gap) const;
+  Choice choose(std::size_t gap) const;
+  template <class Test>
+  std::size_t next_block(std::size_t i, Test any) const;
   void raise(std::size_t gap);
   void put(std::size_t gap, Extent size, bool at_right);
   void merge(std::size_t segment);
@@ -49,6 +51,7 @@ class GapFill {
   std::span<const Extent> items_;
   Extent page_;
   bool allow_rotation_;
+  std::vector<std::int32_t> widths_, heights_;  // of the items of the sequence, in its order
   std::vector<Segment> skyline_;
   std::vector<GapPlacement> placed_;
   std::int64_t placed_area_ = 0;

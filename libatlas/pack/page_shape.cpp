@@ -40,6 +40,15 @@ Extent used_page(const Problem& problem, const Layout& layout, const PackOptions
   return {cells.texel(used.width) + rest, cells.texel(used.height) + rest};
 }
 
+// Leaves only this share of the effort of `best`.
+void share_effort(double share, PackOptions& options) {
+  if (options.preset != PackPreset::best) return;
+  options.time_budget *= share;
+  if (options.effort == 0) return;
+  const double effort = share * static_cast<double>(options.effort);
+  options.effort = std::max<std::uint64_t>(1, static_cast<std::uint64_t>(effort));
+}
+
 }  // namespace
 
 Extent shaped_page(Extent used, const PackOptions& options) {
@@ -75,6 +84,7 @@ class ShapeSolver {
     if (!free && !options_.crop) return solve_with(options_);
     Layout layout = free ? solve_strips({}) : solve_cropped();
     if (options_.crop) pull_in(problem_, layout);
+    if (options_.crop && layout.pages > 1 && !context_.cancelled()) reshape_last_page(layout);
     return layout;
   }
 
@@ -102,7 +112,42 @@ class ShapeSolver {
     Layout whole = solve_with(quick);
     if (whole.pages == 1 && whole.unplaced == 0) return solve_strips(std::move(whole));
     if (options_.preset == quick.preset) return whole;
-    return solve_with(options_);
+    PackOptions most = options_;
+    share_effort(1 - kForLastPage, most);
+    return solve_with(most);
+  }
+
+  // The last page is the emptiest, and the engines give it the shape of a strip on the largest
+  // page. Its items get the smallest page that items of a single page would get.
+  void reshape_last_page(Layout& layout) {
+    std::vector<std::uint32_t> ids;
+    std::vector<Extent> items;
+    Layout last;
+    last.pages = 1;
+    for (std::uint32_t i = 0; i < layout.placements.size(); ++i) {
+      Placement at = layout.placements[i];
+      if (!at.placed() || at.page + 1 != layout.pages) continue;
+      at.page = 0;
+      ids.push_back(i);
+      items.push_back(problem_.items[i]);
+      last.placements.push_back(at);
+    }
+    if (ids.empty()) return;
+    Problem alone = problem_;
+    alone.items = items;
+    alone.max_pages = 1;
+    PackOptions options = options_;
+    share_effort(kForLastPage, options);
+    const std::uint64_t layouts = result_.layouts_tried;
+    const std::uint32_t bound = result_.page_lower_bound;
+    ShapeSolver solver(alone, options, context_, result_);
+    if (Layout anew = solver.run(); solver.cost(anew) < solver.cost(last)) last = std::move(anew);
+    result_.layouts_tried += layouts;
+    result_.page_lower_bound = bound;
+    for (std::size_t k = 0; k < ids.size(); ++k) {
+      layout.placements[ids[k]] = last.placements[k];
+      layout.placements[ids[k]].page = layout.pages - 1;
+    }
   }
 
   Cost cost(const Layout& layout) const {
@@ -183,9 +228,7 @@ class ShapeSolver {
     add_usual_strips(problem_, options_, strips);
     PackOptions share = options_;
     share.page.height = 0;  // strips
-    share.time_budget /= static_cast<double>(strips.size());
-    if (options_.effort > 0)
-      share.effort = std::max<std::uint64_t>(1, options_.effort / strips.size());
+    share_effort(1 / static_cast<double>(strips.size()), share);
     std::uint64_t layouts = 0;
     for (const Strip strip : strips) {
       offer(pack_strip(
@@ -196,17 +239,71 @@ class ShapeSolver {
     return best;
   }
 
+  // The share of the effort of `best` that is spent on the last of several pages.
+  static constexpr double kForLastPage = 0.2;
+
   const Problem& problem_;
   const PackOptions& options_;
   const Context& context_;
   PackResult& result_;
 };
 
+// Returns the texels of all pages as they are reported.
+double page_texels(const Problem& problem, const Layout& layout, const PackOptions& options) {
+  std::vector<Extent> used(layout.pages);
+  const Cells cells(options);
+  const std::int32_t rest = options.border - options.padding;
+  for (std::size_t i = 0; i < problem.items.size(); ++i) {
+    const Placement& at = layout.placements[i];
+    if (!at.placed()) continue;
+    Extent e = problem.items[i];
+    if (at.rotated) std::swap(e.width, e.height);
+    Extent& page = used[at.page];
+    page.width = std::max(page.width, cells.texel(at.x + e.width) + rest);
+    page.height = std::max(page.height, cells.texel(at.y + e.height) + rest);
+  }
+  double texels = 0;
+  for (const Extent& page : used) texels += static_cast<double>(shaped_page(page, options).area());
+  return texels;
+}
+
+// Whether a page of this shape is worth packing without turns as well. Strips whose width is given
+// do that by themselves. For more items, packing takes seconds.
+bool worth_unturned(const Problem& problem, const PackOptions& options) {
+  constexpr std::size_t kMany = 50'000;
+  const bool strip = options.page.width != 0 && options.page.height == 0;
+  const bool shaped = options.page.width == 0 || options.crop;
+  if (!problem.allow_rotation || !problem.pinned.empty() || strip || !shaped) return false;
+  if (problem.items.size() > kMany) return false;
+  return std::all_of(problem.items.begin(), problem.items.end(), [&](const Extent& e) {
+    return e.width <= problem.page.width && e.height <= problem.page.height;
+  });
+}
+
 }  // namespace
 
 Layout solve_shape(const Problem& problem, const PackOptions& options, const Context& context,
                    PackResult& result) {
-  return ShapeSolver(problem, options, context, result).run();
+  if (!worth_unturned(problem, options))
+    return ShapeSolver(problem, options, context, result).run();
+  constexpr double kUnturned = 0.25;  // the share of the effort of `best`
+  Problem part = problem;
+  PackOptions share = options;
+  part.allow_rotation = false;
+  share_effort(kUnturned, share);
+  Layout unturned = ShapeSolver(part, share, context, result).run();
+  const std::uint64_t layouts = result.layouts_tried;
+  part = problem;
+  part.search_unturned = false;
+  share = options;
+  share_effort(1 - kUnturned, share);
+  result.layouts_tried = 0;
+  Layout turned = ShapeSolver(part, share, context, result).run();
+  result.layouts_tried += layouts;
+  const auto cost = [&](const Layout& layout) {
+    return std::tuple(layout.unplaced, layout.pages, page_texels(problem, layout, options));
+  };
+  return cost(unturned) < cost(turned) ? std::move(unturned) : std::move(turned);
 }
 
 }  // namespace atlas::pack

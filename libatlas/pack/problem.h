@@ -16,6 +16,9 @@ struct Problem {
   std::span<const Extent> items;
   Extent page;
   bool allow_rotation = false;
+  // Whether strips of items that may be turned are also searched without turning any. A caller that
+  // does this itself turns it off.
+  bool search_unturned = true;
   std::uint32_t max_pages = kNoPage;
   // By page; may have fewer entries than there are pages.
   std::vector<std::vector<Rect>> pinned;

@@ -19,9 +19,10 @@ class StripBeam {
   StripBeam(std::span<const Extent> items, std::int32_t width, bool allow_rotation);
 
   struct Limits {
-    std::int32_t height = 0;     // maximum height of the layout
-    std::size_t states = 8;      // number of partial layouts that are kept
-    double large_first = 3;      // how much large items are preferred: an exponent of their area
+    std::int32_t height = 0;  // maximum height of the layout
+    std::size_t states = 8;   // number of partial layouts that are kept
+    // How much large items are preferred: an exponent of their area, a multiple of 1/2.
+    double large_first = 3;
     std::function<bool()> stop;  // called after every item; true ends the search; may be empty
   };
   // Places all items. Returns an empty list if it found no layout.
@@ -47,6 +48,11 @@ class StripBeam {
     std::uint32_t state, kind;
     bool rotated, at_right;
   };
+  // The gap to fill: its width, the height up to the strip's top, the heights of its walls, and the
+  // smallest possible width of the items left.
+  struct Gap {
+    std::int32_t width, room, left, right, least;
+  };
   struct Node {
     std::uint32_t parent, kind;
     std::int32_t x, y;
@@ -56,7 +62,8 @@ class StripBeam {
   State empty_strip() const;
   bool next_gap(State& state, std::size_t& gap) const;
   void add_children(std::uint32_t index, State& state);
-  void try_child(const State& state, std::size_t gap, Child child);
+  void try_child(const State& state, const Gap& gap, Extent size, Child child);
+  double weight(double area) const;
   bool grow(const Child& child, State& state) const;
   bool close_narrow_gaps(State& state) const;
   void raise(State& state, std::size_t gap) const;
@@ -74,6 +81,7 @@ class StripBeam {
   bool allow_rotation_;
   std::size_t count_ = 0;
   std::int64_t total_ = 0, allowed_waste_ = 0;
+  double mean_ = 0;  // area of an item
   std::vector<Kind> kinds_;
   // Kinds in ascending order of their smallest possible width.
   std::vector<std::uint32_t> by_side_;

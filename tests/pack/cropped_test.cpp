@@ -147,6 +147,30 @@ TEST(CroppedPages, OfManyItemsAndALongOneAreNarrow) {
   }
 }
 
+// The items of the last of several pages get no larger page than if they were packed alone.
+TEST(CroppedPages, TheLastOfSeveralIsAsSmallAsAlone) {
+  test::Noise noise{31};
+  for (int round = 0; round < 12; ++round) {
+    std::vector<Extent> items(static_cast<std::size_t>(noise.in(40, 120)));
+    for (Extent& e : items) e = {noise.in(4, 60), noise.in(4, 60)};
+    PackOptions o = cropped(round % 4 ? PackPreset::standard : PackPreset::fast);
+    o.page = {128, 128};
+    o.allow_rotation = round % 2;
+    o.power_of_two = round % 3 == 1;
+    o.square = round % 3 == 2;
+    const Result<PackResult> all = pack_rects(items, o, {});
+    ASSERT_TRUE(all.ok() && all->unplaced.empty());
+    EXPECT_EQ(test::check_layout(items, all->placements, all->pages, o), "");
+    ASSERT_GT(all->pages.size(), 1u);
+    std::vector<Extent> last;
+    for (std::size_t i = 0; i < items.size(); ++i)
+      if (all->placements[i].page + 1 == all->pages.size()) last.push_back(items[i]);
+    // Alone, items that may be turned are packed without turns, too, which this page need not be.
+    const double slack = o.allow_rotation ? 1.1 : 1;
+    EXPECT_LE(double(all->pages.back().area()), slack * double(page_of(last, o).area())) << round;
+  }
+}
+
 TEST(CroppedPages, AreTheSameForEveryThreadCount) {
   test::Noise noise{8};
   for (int round = 0; round < 10; ++round) {
