@@ -42,12 +42,20 @@ struct SearchLimits {
   // turning any, and the wall time for them.
   std::uint64_t unturned_layouts = 0;
   double unturned_seconds = 0;
+  // For pages: whether layouts of other engines are offered as starts, and how many layouts may be
+  // tried to join the last two pages (0: none), in how much wall time.
+  bool other_starts = false;
+  std::uint64_t join_layouts = 0;
+  double join_seconds = 0;
   // For strips: a layout that is no higher than this is low enough.
   std::int64_t enough_height = 0;
 };
 
 // Returns the limits of `standard` for this number of items on pages.
 SearchLimits standard_page_limits(std::size_t items);
+
+// Returns the limits of `standard` for these items on a strip, cut to those for joining pages.
+SearchLimits limits_to_join(const Problem& strip, const SearchLimits& pages);
 
 // Solves the problem according to the preset. Fills in page_lower_bound, layouts_tried and curve of
 // the result.

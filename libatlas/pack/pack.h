@@ -62,7 +62,8 @@ struct PackOptions {
   bool allow_rotation = false;  // allows quarter turns
   std::int32_t padding = 0;     // free texels between any two items; 0 .. 2^24
   std::int32_t border = 0;      // free texels along the page's edges; 0 .. 2^24
-  // Items begin at multiples of this, counted from the page's corner; 1 .. 2^24.
+  // Items begin at multiples of this, counted from the page's corner; 1 .. 2^24. Sides of cropped
+  // and open pages are multiples of it, too, unless the largest page has no room for that.
   std::int32_t alignment = 1;
   // The shape of the pages that the result reports: each is cut to what is used and then rounded
   // up.

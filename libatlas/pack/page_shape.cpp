@@ -14,6 +14,8 @@
 namespace atlas::pack {
 namespace {
 
+constexpr std::int32_t kLongestSide = 1 << 30;
+
 double total_area(const Problem& problem) {
   double area = 0;
   for (const Extent& e : problem.items) area += static_cast<double>(e.area());
@@ -53,8 +55,15 @@ void share_effort(double share, PackOptions& options) {
 
 Extent shaped_page(Extent used, const PackOptions& options) {
   Extent page = options.page;
-  if (options.page.height == 0 || options.crop) page.height = used.height;
-  if (options.page.width == 0 || options.crop) page.width = used.width;
+  // Blocks of a compressed texture are whole ones, also at the page's far edges.
+  const auto aligned = [&](std::int32_t side, std::int32_t limit) {
+    const std::int64_t blocks = (std::int64_t{side} + options.alignment - 1) / options.alignment;
+    const std::int64_t whole = blocks * options.alignment;
+    return whole <= (limit > 0 ? limit : kLongestSide) ? static_cast<std::int32_t>(whole) : side;
+  };
+  if (options.page.height == 0 || options.crop)
+    page.height = aligned(used.height, options.page.height);
+  if (options.page.width == 0 || options.crop) page.width = aligned(used.width, options.page.width);
   const auto round_up = [](std::int32_t v) {
     return static_cast<std::int32_t>(std::bit_ceil(static_cast<std::uint32_t>(std::max(1, v))));
   };

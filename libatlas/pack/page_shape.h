@@ -7,7 +7,8 @@
 namespace atlas::pack {
 
 // Returns the page that is reported if `used` texels of it are used: cropped and rounded up as the
-// options demand.
+// options demand. Sides that are not given are multiples of the alignment, unless the largest page
+// is no multiple and has no room for that.
 Extent shaped_page(Extent used, const PackOptions& options);
 
 // Returns the width of a free page in cells. It is that of a square that the items would fill to 95

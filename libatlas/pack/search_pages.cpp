@@ -3,6 +3,7 @@
 
 #include "libatlas/pack/chains.h"
 #include "libatlas/pack/gap_fill.h"
+#include "libatlas/pack/turned_problem.h"
 
 namespace atlas::pack {
 namespace {
@@ -137,6 +138,72 @@ std::vector<FilledPage> fill_in_order(const Problem& problem, Order order) {
   return pages;
 }
 
+// Returns the pages of a layout without unplaced items.
+std::vector<FilledPage> pages_of(const Problem& problem, const Layout& layout) {
+  std::vector<FilledPage> pages(layout.pages);
+  for (std::uint32_t i = 0; i < layout.placements.size(); ++i) {
+    const Placement& p = layout.placements[i];
+    pages[p.page].items.push_back({i, p.x, p.y, p.rotated});
+    pages[p.page].area += problem.items[i].area();
+  }
+  return pages;
+}
+
+// Replaces the start by layouts of other engines that need fewer pages. They take little time: what
+// `fast` does, and maximal free rectangles of items that are turned alike, if they may be turned.
+void start_with_fewer(const Problem& problem, std::vector<FilledPage>& start, PackResult& result) {
+  Problem open = problem;
+  open.max_pages = kNoPage;
+  const auto offer = [&](const Layout& layout) {
+    ++result.layouts_tried;
+    if (layout.unplaced == 0 && layout.pages < start.size()) start = pages_of(problem, layout);
+  };
+  offer(pack_widest_first(open));
+  const auto first_fit = [&](const Problem& p) {
+    return pack_first_fit(p, sorted_items(p.items, Order::height), PlaceRule::bottom_left);
+  };
+  if (!problem.allow_rotation) return offer(first_fit(open));
+  for (const Turn turn : {Turn::lying, Turn::standing, Turn::none}) {
+    const TurnedProblem turned(open, turn);
+    Layout layout = first_fit(turned.problem());
+    turned.turn_back(layout);
+    offer(layout);
+  }
+}
+
+// Searches the items of the two emptiest pages as a strip, which is better at filling a single
+// page, and makes one page of the two if the strip is low enough.
+void join_last_pages(const Problem& problem, const SearchLimits& limits, const Context& context,
+                     std::vector<FilledPage>& pages) {
+  std::stable_sort(pages.begin(), pages.end(),
+                   [](const FilledPage& a, const FilledPage& b) { return a.area > b.area; });
+  const FilledPage &one = pages[pages.size() - 2], &other = pages.back();
+  if (one.area + other.area > problem.page.area()) return;
+  std::vector<std::uint32_t> ids;
+  std::vector<Extent> items;
+  for (const FilledPage* page : {&one, &other})
+    for (const GapPlacement& g : page->items) ids.push_back(g.item);
+  std::sort(ids.begin(), ids.end());
+  for (const std::uint32_t id : ids) items.push_back(problem.items[id]);
+  Problem strip = problem;
+  strip.items = items;
+  strip.page.height = 1 << 30;
+  strip.max_pages = 1;
+  SearchLimits enough = limits_to_join(strip, limits);
+  enough.enough_height = problem.page.height;
+  PackResult unused;
+  const Layout layout = search_strip(strip, enough, context, unused);
+  if (layout.last_used > problem.page.height) return;
+  FilledPage joined;
+  joined.area = one.area + other.area;
+  for (std::uint32_t k = 0; k < ids.size(); ++k) {
+    const Placement& p = layout.placements[k];
+    joined.items.push_back({ids[k], p.x, p.y, p.rotated});
+  }
+  pages.pop_back();
+  pages.back() = std::move(joined);
+}
+
 // Sorts the fullest pages first. If fewer pages are allowed than needed, the emptiest are dropped,
 // and their items are unplaced.
 Layout to_layout(const Problem& problem, std::vector<FilledPage> pages) {
@@ -179,14 +246,20 @@ Layout search_pages(const Problem& problem, const SearchLimits& limits, const Co
   const auto by_area =
       static_cast<std::uint32_t>(std::ceil(area / static_cast<double>(problem.page.area())));
   result.page_lower_bound = start.size() > by_area ? page_bound(problem) : by_area;
+  const std::uint32_t enough = std::max(result.page_lower_bound, limits.enough_pages);
+  if (limits.other_starts && start.size() > enough) start_with_fewer(problem, start, result);
   std::vector<PageChain> chains;
   for (std::uint32_t c = 0; c < limits.chains; ++c) {
-    chains.emplace_back(problem, std::max(result.page_lower_bound, limits.enough_pages),
-                        limits.seed * 0x10001 + c);
+    chains.emplace_back(problem, enough, limits.seed * 0x10001 + c);
     chains.back().start(start);
   }
   const std::size_t best = run_chains(chains, limits, context, result);
-  return to_layout(problem, chains[best].best());
+  std::vector<FilledPage> pages = chains[best].best();
+  const std::uint64_t most = std::uint64_t{problem.max_pages} + 1;
+  if (limits.join_layouts > 0 && !context.cancelled() && pages.size() > enough &&
+      (pages.size() == 2 || pages.size() == most))
+    join_last_pages(problem, limits, context, pages);
+  return to_layout(problem, std::move(pages));
 }
 
 }  // namespace atlas::pack

@@ -24,6 +24,15 @@ void share_with_unturned(const PackOptions& options, SearchLimits& limits) {
     limits.beam_states -= std::min(limits.beam_states, limits.unturned_layouts);
 }
 
+// Takes a tenth of the effort and time of `best` for joining two pages.
+void share_with_join(const PackOptions& options, SearchLimits& limits) {
+  limits.other_starts = true;
+  limits.join_seconds = 0.1 * options.time_budget;
+  limits.seconds -= limits.join_seconds;
+  limits.join_layouts = options.effort > 0 ? options.effort / 10 : UINT64_MAX;
+  if (options.effort > 0) limits.layouts -= limits.join_layouts;
+}
+
 SearchLimits limits_for(const Problem& problem, const PackOptions& options, bool strip) {
   SearchLimits limits;
   limits.seed = options.seed;
@@ -33,6 +42,7 @@ SearchLimits limits_for(const Problem& problem, const PackOptions& options, bool
     limits.layouts = options.effort;
     limits.seconds = options.time_budget;
     limits.chains = 4;
+    if (!strip) share_with_join(options, limits);
     if (beams) {
       limits.seconds = 0.3 * options.time_budget;
       limits.beam_seconds = options.time_budget - limits.seconds;
@@ -42,6 +52,9 @@ SearchLimits limits_for(const Problem& problem, const PackOptions& options, bool
     }
     return limits;
   }
+  limits.other_starts = !strip;
+  limits.join_layouts = strip ? 0 : UINT64_MAX;
+  limits.join_seconds = std::numeric_limits<double>::infinity();
   const std::uint64_t n = problem.items.size();
   limits.seconds = std::numeric_limits<double>::infinity();
   limits.layouts = strip ? 1 + kStripWork / (n * n / 2 + 1000) : standard_page_limits(n).layouts;
@@ -140,6 +153,18 @@ SearchLimits standard_page_limits(std::size_t items) {
   SearchLimits limits;
   limits.seconds = std::numeric_limits<double>::infinity();
   limits.layouts = 1 + kPageWork / (8 * items + 200);
+  return limits;
+}
+
+SearchLimits limits_to_join(const Problem& strip, const SearchLimits& pages) {
+  PackOptions options;
+  options.seed = pages.seed;
+  SearchLimits limits = limits_for(strip, options, true);
+  for (std::uint64_t* layouts : {&limits.layouts, &limits.unturned_layouts, &limits.beam_states})
+    *layouts = std::min(*layouts, pages.join_layouts);
+  limits.layouts = std::max<std::uint64_t>(1, limits.layouts);  // 0 is no limit
+  for (double* seconds : {&limits.seconds, &limits.unturned_seconds, &limits.beam_seconds})
+    *seconds = pages.join_seconds / 3;
   return limits;
 }
 
