@@ -14,6 +14,7 @@
 #include <string>
 
 #include "benchmarks/support/callgrind.h"
+#include "libatlas/core/parallel.h"
 
 namespace atlas::bench {
 namespace {
@@ -45,6 +46,7 @@ class Stream {
 // A child process has only the thread that forked, so a thread pool would wait for its workers for
 // ever. TBB starts its pool again when it is next needed, in parent and child.
 bool end_threads() {
+  release_threads();
   tbb::task_scheduler_handle pool{tbb::attach{}};
   return tbb::finalize(pool, std::nothrow);
 }

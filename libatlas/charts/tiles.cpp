@@ -338,7 +338,7 @@ Result<std::size_t> cut_to_limits(const MeshView& mesh, const TileLimits& limits
     return Status(ErrorCode::bad_input,
                   fmt::format("tiles: {} limits for {} charts", limits.sides.size(), old.size()));
   for (std::size_t c = 0; c < old.size(); ++c) {
-    if (!(limits.sides[c] > 0))
+    if (!(limits.sides[c] > 0) && old[c].size.x > 0)
       return Status(
           ErrorCode::bad_input,
           fmt::format("tiles: the limit of chart {} is {} (above 0)", c, limits.sides[c]));

@@ -11,7 +11,7 @@
 namespace atlas {
 
 struct TileLimits {
-  std::span<const double> sides;  // of charts' boxes, scene units, one per chart, > 0
+  std::span<const double> sides;  // of charts' boxes, scene units, one per chart, > 0 (any for points)
   double max_stretch = 1.25;      // of pieces: ChartOptions::max_stretch
 };
 

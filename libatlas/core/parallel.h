@@ -17,6 +17,10 @@ namespace atlas {
 void parallel_for(const Context& context, std::size_t n, std::size_t grain,
                   const std::function<void(std::size_t begin, std::size_t end)>& body);
 
+// Gives up what the calling thread keeps for its loops, so that tbb::finalize() can end TBB's
+// threads: for programs that fork. Must not be called within a loop. Later loops begin anew.
+void release_threads();
+
 // Returns the number of threads that a context gets, at least 1: the machine's number if the
 // context leaves it open, and at most 256 or the machine's number if that is larger.
 std::size_t thread_count(const Context& context);

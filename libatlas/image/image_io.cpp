@@ -114,16 +114,14 @@ const Module& module() {
   return loaded;
 }
 
-Status missing_module(const std::string& name) {
-  return {ErrorCode::unsupported, fmt::format("{}: {}", name, module().why_not)};
-}
-
 // Calls the module's function, or returns the reason why there is no module.
 template <class Function, class... Arguments>
 auto call(Function ImageFiles::*function, const std::string& name, Arguments&&... arguments)
     -> decltype((std::declval<ImageFiles>().*function)(arguments...)) {
   const Module& files = module();
-  if (!files.functions) return missing_module(name);
+  if (!files.functions) {
+    return Status(ErrorCode::unsupported, fmt::format("{}: {}", name, files.why_not));
+  }
   return (files.functions->*function)(std::forward<Arguments>(arguments)...);
 }
 
@@ -143,10 +141,6 @@ Status check_image(const fs::path& path, const Image<T>& image, int most_channel
 }
 
 }  // namespace
-
-Status check_image_files() {
-  return module().functions ? Status() : missing_module("images");
-}
 
 Result<Image8> read_image8(const fs::path& path) {
   return call(&ImageFiles::read_image8, path.string(), path);

@@ -16,9 +16,6 @@
 
 namespace atlas {
 
-// Whether image files can be read and written: `unsupported`, with the reason, without the module.
-Status check_image_files();
-
 // Reads any format that OpenImageIO supports as 8-bit values, with all channels and without colour
 // conversion (an sRGB file stays sRGB-encoded). Colours are not multiplied by alpha, unless the
 // file stores them so, as some TIFF files do.

@@ -7,7 +7,6 @@
 
 #include "libatlas/bake/placement.h"
 #include "libatlas/core/atomic_file.h"
-#include "libatlas/image/image_io.h"
 #include "libatlas/pipeline/bake_pages.h"
 #include "libatlas/scene/triangle_area.h"
 #include "libatlas/texture/luminance.h"
@@ -241,7 +240,6 @@ Status check_plan(const ExportPlan& plan, const ExportOptions& options) {
             "ExportOptions::charts_only to get uvs without light)"};
   }
   if (Status s = check_writable(target); !s.ok() || !plan.bake) return s;
-  if (Status s = check_image_files(); !s.ok()) return s;
   const std::string last_page = page_name(target, options.atlases - 1) + ".png";
   if (Status s = check_writable(target.parent_path() / last_page); !s.ok()) return s;
   // A chart smaller than a texel has no place on a page.

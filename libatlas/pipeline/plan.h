@@ -25,9 +25,8 @@ TextureOptions texture_options(const ExportPlan& plan, const ExportReport& repor
 ExportReport planned_report(const LoadedScene& loaded, const ExportPlan& plan,
                             const ExportOptions& options);
 
-// Finds errors that would otherwise show only after minutes: texels larger than the scene, files
-// that could not be written, and images for which there is no module (check_image_files()). Errors:
-// bad_input, bad_option, io, unsupported.
+// Finds errors that would otherwise show only after minutes: texels larger than the scene, and
+// files that could not be written. Errors: bad_input, bad_option, io.
 Status check_plan(const ExportPlan& plan, const ExportOptions& options);
 
 }  // namespace atlas
