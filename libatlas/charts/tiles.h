@@ -11,8 +11,9 @@
 namespace atlas {
 
 struct TileLimits {
-  std::span<const double> sides;  // of charts' boxes, scene units, one per chart, > 0 (any for points)
-  double max_stretch = 1.25;      // of pieces: ChartOptions::max_stretch
+  std::span<const double>
+      sides;                  // of charts' boxes, scene units, one per chart, > 0 (any for points)
+  double max_stretch = 1.25;  // of pieces: ChartOptions::max_stretch
 };
 
 // Cuts every chart whose box is longer than its limit across its long side, repeatedly, until the
