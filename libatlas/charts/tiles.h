@@ -11,8 +11,8 @@
 namespace atlas {
 
 struct TileLimits {
-  std::span<const double>
-      sides;                  // of charts' boxes, scene units, one per chart, > 0 (any for points)
+  // Of charts' boxes, scene units; one per chart, > 0 (any for points).
+  std::span<const double> sides;
   double max_stretch = 1.25;  // of pieces: ChartOptions::max_stretch
 };
 
