@@ -40,7 +40,6 @@ function(atlas_module name)
   endforeach()
   target_link_libraries(atlas_${name} PRIVATE ${ARG_PRIVATE_LIBS})
   set_property(GLOBAL APPEND PROPERTY ATLAS_MODULES ${name})
-  set_property(GLOBAL APPEND PROPERTY ATLAS_PRIVATE_LIBS ${ARG_PRIVATE_LIBS})
 endfunction()
 
 # atlas_test(NAME SOURCES ... MODULES core scene ... [LIBS target ...] [LABEL quick|heavy])

@@ -14,10 +14,10 @@
 #include "libatlas/bake/chart_box.h"
 #include "libatlas/bake/least_squares.h"
 #include "libatlas/bake/page_owners.h"
+#include "libatlas/charts/chart_triangles.h"
 #include "libatlas/core/parallel.h"
 #include "libatlas/raster/coverage.h"
 #include "libatlas/raster/sampling.h"
-#include "libatlas/texture/chart_triangles.h"
 #include "libatlas/texture/triangle_light.h"
 
 namespace atlas {
@@ -287,7 +287,6 @@ Result<BakedPage> bake_page(const ChartLight& light, std::span<const ChartPlacem
       const std::lock_guard lock(counting);
       page.triangles += light.charts.charts[placements[i].chart].triangle_count;
       page.covered_texels += covered;
-      page.filled_texels += filled;
       context.report("bake", static_cast<double>(++done) / static_cast<double>(placements.size()));
     }
   });

@@ -7,8 +7,8 @@
 
 #include "libatlas/bake/chart_box.h"
 #include "libatlas/bake/ownership.h"
+#include "libatlas/charts/chart_triangles.h"
 #include "libatlas/core/parallel.h"
-#include "libatlas/texture/chart_triangles.h"
 
 namespace atlas {
 namespace {

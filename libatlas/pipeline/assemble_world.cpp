@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "libatlas/pipeline/round_uvs.h"
+#include "libatlas/uvs/round_uvs.h"
 
 namespace atlas {
 namespace {

@@ -10,11 +10,11 @@
 #include <tuple>
 #include <utility>
 
+#include "libatlas/charts/chart_triangles.h"
 #include "libatlas/core/glm_bridge.h"
 #include "libatlas/core/parallel.h"
 #include "libatlas/pack/chart_outline.h"
-#include "libatlas/pipeline/chart_drawing.h"
-#include "libatlas/texture/chart_triangles.h"
+#include "libatlas/uvs/chart_drawing.h"
 
 namespace atlas {
 namespace {

@@ -6,8 +6,8 @@
 #include <cmath>
 #include <optional>
 
+#include "libatlas/charts/chart_triangles.h"
 #include "libatlas/core/progress.h"
-#include "libatlas/texture/chart_triangles.h"
 
 namespace atlas {
 namespace {

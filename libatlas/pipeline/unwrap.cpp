@@ -14,7 +14,7 @@
 #include "libatlas/pipeline/draw_once.h"
 #include "libatlas/pipeline/fill_pages.h"
 #include "libatlas/pipeline/part_gaps.h"
-#include "libatlas/pipeline/round_uvs.h"
+#include "libatlas/uvs/round_uvs.h"
 
 namespace atlas {
 namespace {

@@ -1,4 +1,4 @@
-#include <fstream>  // tinygltf.h does not include it if TINYGLTF_NO_FS is set
+#include <fstream>  // tiny_gltf.h does not include it if TINYGLTF_NO_FS is set
 #define TINYGLTF_IMPLEMENTATION
 #include "libatlas/scene/gltf_file.h"
 

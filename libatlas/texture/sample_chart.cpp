@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cstring>
 
+#include "libatlas/charts/chart_triangles.h"
 #include "libatlas/raster/sampling.h"
-#include "libatlas/texture/chart_triangles.h"
 #include "libatlas/texture/triangle_light.h"
 
 namespace atlas {

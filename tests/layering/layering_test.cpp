@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <fstream>
 #include <regex>
+#include <set>
 #include <sstream>
 #include <string>
 #include <vector>
@@ -88,6 +89,26 @@ TEST(Layering, FoldersIncludeOnlyThoseAboveThem) {
     }
   }
   EXPECT_GT(seen, 100);
+}
+
+// What a folder's CMakeLists.txt names behind DEPENDS is what the folder includes.
+TEST(Layering, DependsAreThoseThatAreIncluded) {
+  for (const std::string& folder : folder_order()) {
+    std::set<std::string> included, listed;
+    for (const fs::path& path : sources(""))
+      if (*fs::relative(path, kRoot / "libatlas").begin() == folder)
+        for (const Include& include : includes_of(path))
+          if (include.target.rfind("libatlas/", 0) == 0)
+            included.insert((++fs::path(include.target).begin())->string());
+    included.erase(folder);
+    const std::string text = read(kRoot / "libatlas" / folder / "CMakeLists.txt");
+    std::smatch depends;
+    if (std::regex_search(text, depends, std::regex(R"(DEPENDS([a-z_\s]+))"))) {
+      std::istringstream names(depends[1]);
+      for (std::string name; names >> name;) listed.insert(name);
+    }
+    EXPECT_EQ(listed, included) << folder;
+  }
 }
 
 // The same rule within charts/, in the order in which its CMakeLists.txt first names the folders.

@@ -7,7 +7,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "tests/pipeline/flat_mesh.h"
+#include "tests/uvs/flat_mesh.h"
 
 namespace atlas::test {
 namespace {

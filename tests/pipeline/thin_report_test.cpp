@@ -12,10 +12,10 @@
 #include "libatlas/pipeline/export_world.h"
 #include "libatlas/pipeline/unwrap.h"
 #include "libatlas/scene/check_scene.h"
-#include "tests/pipeline/flat_mesh.h"
 #include "tests/pipeline/unwrap_checks.h"
 #include "tests/scene/temp_folder.h"
 #include "tests/support/atlas_measure.h"
+#include "tests/uvs/flat_mesh.h"
 
 namespace atlas::test {
 namespace {

@@ -12,11 +12,11 @@
 
 #include "libatlas/bake/bake.h"
 #include "libatlas/pipeline/unwrap.h"
-#include "tests/pipeline/flat_mesh.h"
 #include "tests/pipeline/lit_scene.h"
 #include "tests/pipeline/unwrap_checks.h"
 #include "tests/support/atlas_measure.h"
 #include "tests/support/shapes.h"
+#include "tests/uvs/flat_mesh.h"
 
 namespace atlas::test {
 namespace {

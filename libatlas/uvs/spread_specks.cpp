@@ -1,4 +1,4 @@
-#include "libatlas/pipeline/spread_specks.h"
+#include "libatlas/uvs/spread_specks.h"
 
 #include <algorithm>
 #include <array>
@@ -6,7 +6,7 @@
 #include <glm/geometric.hpp>
 #include <optional>
 
-#include "libatlas/pipeline/thin_uvs.h"
+#include "libatlas/uvs/thin_uvs.h"
 
 namespace atlas {
 namespace {

@@ -1,5 +1,5 @@
 // Texels that triangles of a chart draw twice, against a test of every texel's centre.
-#include "libatlas/pipeline/chart_drawing.h"
+#include "libatlas/uvs/chart_drawing.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "libatlas/pipeline/open_stacks.h"
+#include "libatlas/uvs/open_stacks.h"
 
 #include <Eigen/Dense>
 #include <Eigen/SparseCholesky>
@@ -9,7 +9,7 @@
 #include <limits>
 #include <utility>
 
-#include "libatlas/pipeline/thin_uvs.h"
+#include "libatlas/uvs/thin_uvs.h"
 
 namespace atlas {
 namespace {

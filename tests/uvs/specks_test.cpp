@@ -1,6 +1,6 @@
 // Opening stacks and spreading specks leaves no more thin triangles than there were, and takes
 // bounded time.
-#include "libatlas/pipeline/spread_specks.h"
+#include "libatlas/uvs/spread_specks.h"
 
 #include <gtest/gtest.h>
 
@@ -9,10 +9,10 @@
 #include <vector>
 
 #include "libatlas/core/clock.h"
-#include "libatlas/pipeline/open_stacks.h"
-#include "libatlas/pipeline/round_uvs.h"
-#include "libatlas/pipeline/thin_uvs.h"
-#include "tests/pipeline/flat_mesh.h"
+#include "libatlas/uvs/open_stacks.h"
+#include "libatlas/uvs/round_uvs.h"
+#include "libatlas/uvs/thin_uvs.h"
+#include "tests/uvs/flat_mesh.h"
 
 namespace atlas::test {
 namespace {

@@ -1,11 +1,11 @@
-#include "libatlas/pipeline/round_uvs.h"
+#include "libatlas/uvs/round_uvs.h"
 
 #include <deque>
 
 #include "libatlas/core/counting_sort.h"
-#include "libatlas/pipeline/open_stacks.h"
-#include "libatlas/pipeline/spread_specks.h"
-#include "libatlas/pipeline/thin_uvs.h"
+#include "libatlas/uvs/open_stacks.h"
+#include "libatlas/uvs/spread_specks.h"
+#include "libatlas/uvs/thin_uvs.h"
 
 namespace atlas {
 namespace {

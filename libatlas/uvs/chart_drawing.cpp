@@ -1,12 +1,12 @@
-#include "libatlas/pipeline/chart_drawing.h"
+#include "libatlas/uvs/chart_drawing.h"
 
 #include <algorithm>
 #include <bit>
 #include <glm/common.hpp>
 
 #include "libatlas/core/glm_bridge.h"
-#include "libatlas/pipeline/thin_uvs.h"
 #include "libatlas/raster/scan.h"
+#include "libatlas/uvs/thin_uvs.h"
 
 namespace atlas {
 namespace {

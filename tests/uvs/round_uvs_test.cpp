@@ -1,5 +1,5 @@
 // Rounding uvs to floats leaves every triangle positive, for readers that use floats or doubles.
-#include "libatlas/pipeline/round_uvs.h"
+#include "libatlas/uvs/round_uvs.h"
 
 #include <gtest/gtest.h>
 
@@ -10,9 +10,9 @@
 #include <string>
 #include <vector>
 
-#include "libatlas/pipeline/open_stacks.h"
-#include "libatlas/pipeline/thin_uvs.h"
-#include "tests/pipeline/flat_mesh.h"
+#include "libatlas/uvs/open_stacks.h"
+#include "libatlas/uvs/thin_uvs.h"
+#include "tests/uvs/flat_mesh.h"
 
 namespace atlas::test {
 namespace {
