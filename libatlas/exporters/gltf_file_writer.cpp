@@ -13,7 +13,7 @@
 #include "libatlas/exporters/gltf_kept_nodes.h"
 #include "libatlas/exporters/gltf_kept_rest.h"
 #include "libatlas/exporters/scene_writers.h"
-#include "libatlas/exporters/vertex_unifier.h"
+#include "libatlas/exporters/unify_vertices.h"
 
 namespace atlas {
 namespace fs = std::filesystem;
@@ -197,7 +197,7 @@ class FileWriter {
   }
 
   UnifiedMesh<2> unify(const GltfShownPrimitive& shown) {
-    return unifier_.unify(3 * shown.triangles, [&](std::size_t k) {
+    return unify_vertices<2>(3 * shown.triangles, [&](std::size_t k) {
       const std::size_t corner = corner_of(shown, k);
       return Key{static_cast<std::uint32_t>(scene_.indices[corner] - shown.first_position),
                  world_.pages[0].uv_indices[corner]};
@@ -276,7 +276,6 @@ class FileWriter {
   GltfData data_;
   KeptMaterials materials_;
   const std::int64_t set_;  // number of the new uv set
-  VertexUnifier<2> unifier_;
 };
 
 }  // namespace

@@ -10,7 +10,7 @@
 #include "libatlas/exporters/gltf_textures.h"
 #include "libatlas/exporters/scene_parts.h"
 #include "libatlas/exporters/scene_writers.h"
-#include "libatlas/exporters/vertex_unifier.h"
+#include "libatlas/exporters/unify_vertices.h"
 #include "libatlas/scene/losses.h"
 
 namespace atlas {
@@ -146,7 +146,7 @@ class SceneWriter {
 
   // Adds the part as a primitive to its object's mesh.
   void add(const ScenePart& part, std::size_t material, WorldFile& result) {
-    const auto unified = unifier_.unify(3 * part.triangles.size(), [&](std::size_t k) {
+    const auto unified = unify_vertices<4>(3 * part.triangles.size(), [&](std::size_t k) {
       const std::size_t corner = 3 * std::size_t(part.triangles[k / 3]) + k % 3;
       return Key{scene_.indices[corner], world_.pages[0].uv_indices[corner],
                  part.texcoords ? texcoord_[scene_.texcoord_indices[corner]] : 0,
@@ -228,8 +228,7 @@ class SceneWriter {
   GltfDocument& document_;
   std::vector<std::uint32_t> texcoord_, normal_;  // index of the first equal value
   const char* light_;                             // name of the light's attribute
-  VertexUnifier<4> unifier_;
-  std::uint32_t object_ = 0;  // the object of the last mesh
+  std::uint32_t object_ = 0;                      // the object of the last mesh
 };
 
 // Counts what is lost: what an MTL says of materials and this file does not, what the reader left

@@ -9,7 +9,7 @@
 #include "libatlas/exporters/gltf_document.h"
 #include "libatlas/exporters/page_sides.h"
 #include "libatlas/exporters/scene_writers.h"
-#include "libatlas/exporters/vertex_unifier.h"
+#include "libatlas/exporters/unify_vertices.h"
 #include "libatlas/exporters/world.h"
 #include "libatlas/scene/file_bytes.h"
 #include "libatlas/scene/scene.h"
@@ -85,7 +85,7 @@ class PagesWriter {
 
   // Returns a primitive that has no material yet.
   json add_side(const PageSides::Side& side, WorldFile& result) {
-    const auto unified = unifier_.unify(side.indices.size(), [&](std::size_t k) {
+    const auto unified = unify_vertices<2>(side.indices.size(), [&](std::size_t k) {
       return std::array{side.indices[k], side.uv_indices[k]};
     });
     json primitive;
@@ -143,7 +143,6 @@ class PagesWriter {
 
   const World& world_;
   GltfDocument& document_;
-  VertexUnifier<2> unifier_;
 };
 
 }  // namespace

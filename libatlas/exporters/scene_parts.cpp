@@ -5,7 +5,7 @@
 #include <map>
 #include <tuple>
 
-#include "libatlas/exporters/vertex_unifier.h"
+#include "libatlas/exporters/unify_vertices.h"
 
 namespace atlas {
 namespace {
@@ -20,7 +20,7 @@ bool all_named(const std::vector<std::uint32_t>& indices, std::size_t triangle) 
 template <std::size_t N, class Vector>
 std::vector<std::uint32_t> first_equal_of(std::span<const Vector> values) {
   static_assert(sizeof(Vector) == 4 * N);
-  const auto unified = VertexUnifier<N>().unify(values.size(), [&](std::size_t i) {
+  const auto unified = unify_vertices<N>(values.size(), [&](std::size_t i) {
     std::array<std::uint32_t, N> bits;
     std::memcpy(bits.data(), &values[i], sizeof bits);
     return bits;

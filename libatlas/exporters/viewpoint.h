@@ -11,8 +11,9 @@ namespace atlas {
 
 struct ViewpointOptions {
   Up up = Up::y;
-  double metres_per_unit = 1;  // for the eye height of 1.6 m, used where the rooms are tall enough
-  int cells = 96;              // voxels along the longest side of the box, 8 to 512
+  // > 0; for the eye height of 1.6 m, which is used where the rooms are tall enough.
+  double metres_per_unit = 1;
+  int cells = 96;  // voxels along the longest side of the box, 8 to 512
 };
 
 // Chooses a point inside the scene, above a floor, with free space around it and the longest view

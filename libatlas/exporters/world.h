@@ -20,7 +20,7 @@ enum class Up { y, z };
 
 // Where a viewer starts, in the coordinates of World::positions, that is, relative to the origin.
 struct Viewpoint {
-  Vec3d position;
+  Vec3d position = {};
   Vec3d direction{0, 0, -1};  // of view; not zero, not along the up axis
   double fov = 1.0;           // radians, in (0, pi); of the smaller side of the window
   // Whether the scene surrounds the viewpoint: viewers then walk, otherwise they turn the object.
@@ -28,26 +28,26 @@ struct Viewpoint {
 };
 
 struct Page {
-  std::string image;  // file name beside the world, see safe_file_name(); empty: no texture
+  std::string image = {};  // file name beside the world, see safe_file_name(); empty: no texture
   // Path of the finished image while the world is written. Only .glb needs it, to embed the image.
-  std::filesystem::path image_source;
-  std::vector<std::uint32_t> indices;     // 3 per triangle, into World::positions
-  std::vector<std::uint32_t> uv_indices;  // 3 per triangle, into World::uvs
+  std::filesystem::path image_source = {};
+  std::vector<std::uint32_t> indices = {};     // 3 per triangle, into World::positions
+  std::vector<std::uint32_t> uv_indices = {};  // 3 per triangle, into World::uvs
   // 1 per triangle, or empty: whether it is seen from its front only, where its corners run
   // counter-clockwise. All others are seen from both sides. OBJ cannot tell them apart.
   std::vector<bool> one_sided = {};
 };
 
 struct World {
-  Vec3d origin;                  // added to every position to get the coordinates of the file
-  double metres_per_unit = 1;    // > 0
-  Up up = Up::y;                 // the scene's up axis; coordinates are written unchanged
-  std::vector<Vec3f> positions;  // finite; shared by all pages
-  std::vector<Vec2f> uvs;        // finite, 0..1, origin bottom left
-  std::vector<Page> pages;
-  std::string title;
-  std::vector<std::string> info;  // one line each, for WorldInfo and comments
-  Viewpoint viewpoint;
+  Vec3d origin = {};                  // added to every position to get the coordinates of the file
+  double metres_per_unit = 1;         // > 0
+  Up up = Up::y;                      // the scene's up axis; coordinates are written unchanged
+  std::vector<Vec3f> positions = {};  // finite; shared by all pages
+  std::vector<Vec2f> uvs = {};        // finite, 0..1, origin bottom left
+  std::vector<Page> pages = {};
+  std::string title = {};
+  std::vector<std::string> info = {};  // one line each, for WorldInfo and comments
+  Viewpoint viewpoint = {};
   // If not null: the scene that the uvs are for. It is written with its own objects, materials,
   // normals and texture coordinates (see write_gltf and write_obj). The world then has one page,
   // without an image, whose `indices` are those of the scene, corner by corner. The scene must
@@ -62,7 +62,8 @@ struct WorldFile {
   // attribute that holds the new uvs ("TEXCOORD_1"; "vt" in OBJ).
   std::vector<std::string> not_kept = {};
   std::string uv_set = {};
-  Vec3d origin_left_out;  // to be added to the written coordinates; zero except in VRML, see there
+  // To be added to the written coordinates; zero except in VRML, see there.
+  Vec3d origin_left_out = {};
 };
 
 // Writers check the world first (bad_input: an index out of range, a number that is not finite or

@@ -5,9 +5,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cstring>
 
+#include "libatlas/core/first_index.h"
 #include "libatlas/core/small_letters.h"
 #include "libatlas/scene/file_bytes.h"
 #include "libatlas/scene/formats.h"
@@ -36,10 +38,10 @@ class Soup {
 
   template <class Place>
   void add_corner(Vec3d p, const Place& place) {
-    if (2 * builder_.positions.size() >= table_.size()) grow();
+    if (builder_.positions.size() >= first_.most()) grow();
     p = {p.x + 0.0, p.y + 0.0, p.z + 0.0};  // -0 is 0
     std::uint32_t& entry = find(p);
-    if (entry == kNone) {
+    if (entry == FirstIndex::kNone) {
       entry = static_cast<std::uint32_t>(builder_.positions.size());
       builder_.positions.push_back(p);
       if (!usable_position(p) && bad_.size() < DefectReport::kMaxPlaces) bad_.push_back(place());
@@ -52,37 +54,29 @@ class Soup {
 
   // Ends the list of points. Faces can only be added after this.
   void finish_points() {
-    std::vector<std::uint32_t>().swap(table_);
+    first_ = FirstIndex();
     auto next_bad = bad_.begin();
     builder_.check_positions([&](std::size_t) { return *next_bad++; });
   }
 
  private:
-  static constexpr std::uint32_t kNone = 0xffffffffu;
-
   // Returns the table entry of a point, which is compared by its bits: NaN is equal to itself here.
   std::uint32_t& find(const Vec3d& p) {
-    std::uint64_t key[3];
-    std::memcpy(key, &p, sizeof key);
-    std::uint64_t h = 0;
-    for (const std::uint64_t k : key) h = (h ^ (h >> 32) ^ k) * 0xd6e8feb86659fd93ull;
-    for (std::size_t slot = h >> 32;; ++slot) {
-      std::uint32_t& entry = table_[slot & (table_.size() - 1)];
-      if (entry == kNone || std::memcmp(&builder_.positions[entry], &p, sizeof p) == 0) {
-        return entry;
-      }
-    }
+    const auto words = std::bit_cast<std::array<std::uint32_t, 6>>(p);
+    return first_.find(hash_words(words), [&](std::uint32_t i) {
+      return std::memcmp(&builder_.positions[i], &p, sizeof p) == 0;
+    });
   }
 
   void grow() {
-    table_.assign(std::max<std::size_t>(1024, 4 * std::bit_ceil(builder_.positions.size())), kNone);
-    for (std::size_t i = 0; i < builder_.positions.size(); ++i) {
+    first_ = FirstIndex(2 * std::max<std::size_t>(512, builder_.positions.size()));
+    for (std::size_t i = 0; i < builder_.positions.size(); ++i)
       find(builder_.positions[i]) = static_cast<std::uint32_t>(i);
-    }
   }
 
   SceneBuilder& builder_;
-  std::vector<std::uint32_t> table_, corners_;
+  FirstIndex first_;
+  std::vector<std::uint32_t> corners_;
   std::vector<std::string> bad_;  // places of the first unusable positions
 };
 

@@ -1,16 +1,16 @@
 #include "libatlas/view/view_scene.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
-#include <cstring>
 #include <limits>
 #include <numbers>
 #include <numeric>
 #include <span>
 #include <tuple>
-#include <unordered_map>
 
 #include "libatlas/core/counting_sort.h"
+#include "libatlas/core/first_index.h"
 #include "libatlas/core/glm_bridge.h"
 #include "libatlas/scene/check_scene.h"
 
@@ -22,21 +22,15 @@ constexpr std::uint32_t kNone = Scene::kNoTexcoord;
 // Welds positions that are equal (-0 and 0 are). Readers keep what files say, and many files repeat
 // every corner, which would otherwise make every edge a crease.
 std::vector<std::uint32_t> weld(const std::vector<Vec3f>& positions) {
-  struct Hash {
-    std::size_t operator()(const Vec3f& v) const {
-      std::uint32_t b[3];
-      const float f[3] = {v.x + 0.0f, v.y + 0.0f, v.z + 0.0f};  // -0 and 0 are the same point
-      std::memcpy(b, f, sizeof b);
-      std::uint64_t h = 0x9e3779b97f4a7c15u;
-      for (std::uint32_t x : b) h = (h ^ x) * 0xff51afd7ed558ccdu, h ^= h >> 32;
-      return std::size_t(h);
-    }
-  };
-  std::unordered_map<Vec3f, std::uint32_t, Hash> first;
-  first.reserve(positions.size());
+  FirstIndex first(positions.size());
   std::vector<std::uint32_t> out(positions.size());
-  for (std::size_t i = 0; i < positions.size(); ++i)
-    out[i] = first.try_emplace(positions[i], std::uint32_t(i)).first->second;
+  for (std::uint32_t i = 0; i < out.size(); ++i) {
+    const Vec3f& p = positions[i];
+    std::uint32_t& entry = first.find(hash_words<3>({word_of(p.x), word_of(p.y), word_of(p.z)}),
+                                      [&](std::uint32_t k) { return positions[k] == p; });
+    if (entry == FirstIndex::kNone) entry = i;
+    out[i] = entry;
+  }
   return out;
 }
 
@@ -101,23 +95,14 @@ std::uint32_t spread(double value) {
   return (x | x << 2) & 0x09249249u;
 }
 
-// One vertex is drawn for each different corner.
-struct CornerKey {
-  std::uint32_t position, texcoord, material;
-  std::int16_t normal[3];
-  bool operator==(const CornerKey& o) const {
-    return position == o.position && texcoord == o.texcoord && material == o.material &&
-           std::equal(normal, normal + 3, o.normal);
-  }
-};
-struct CornerHash {
-  std::size_t operator()(const CornerKey& k) const {
-    std::uint64_t h = k.position * 0x9e3779b97f4a7c15u ^ k.texcoord * 0xc2b2ae3d27d4eb4fu ^
-                      k.material * 0x165667b19e3779f9u;
-    for (std::int16_t n : k.normal) h = (h ^ std::uint16_t(n)) * 0xff51afd7ed558ccdu, h ^= h >> 29;
-    return std::size_t(h);
-  }
-};
+// One vertex is drawn for each different corner: position, texcoord, material, and the normal in
+// steps of 1/16000.
+using CornerKey = std::array<std::uint32_t, 5>;
+
+std::uint32_t two_words(float low, float high) {
+  const auto word = [](float n) { return std::uint32_t(std::uint16_t(std::lround(n * 16000))); };
+  return word(low) | word(high) << 16;
+}
 
 // Returns no emission if a texture shapes it. Such textures are not read, and their factor alone
 // would light up what they leave dark.
@@ -132,7 +117,8 @@ class Builder {
         welded_(weld(scene.positions)),
         corners_at_(corners_by_vertex(welded_, scene.indices)),
         faces_(face_normals(scene)),
-        cosine_(float(std::cos(options.crease_degrees * std::numbers::pi / 180))) {
+        cosine_(float(std::cos(options.crease_degrees * std::numbers::pi / 180))),
+        first_(scene.indices.size()) {
     textured_ = scene.textured() && !scene.texcoord_indices.empty();
     emits_ = std::any_of(scene.materials.begin(), scene.materials.end(),
                          [](const Material& m) { return plain_emission(m) != Vec3f{}; });
@@ -190,20 +176,23 @@ class Builder {
   std::uint32_t vertex(std::uint32_t t, int k) {
     const std::uint32_t corner = 3 * t + std::uint32_t(k), p = scene_.indices[corner];
     const glm::vec3 n = corner_normal(corners_at_[welded_[p]], faces_, t, cosine_);
-    CornerKey key{scene_.lit() ? p : welded_[p], kNone, 0, {}};
-    key.material = scene_.triangle_material[t];
-    if (textured_) key.texcoord = scene_.texcoord_indices[corner];
-    for (int i = 0; i < 3; ++i) key.normal[i] = std::int16_t(std::lround(n[i] * 16000));
-    const auto [it, fresh] = known_.try_emplace(key, std::uint32_t(view_.positions.size()));
-    if (!fresh) return it->second;
+    const std::uint32_t material = scene_.triangle_material[t],
+                        texcoord = textured_ ? scene_.texcoord_indices[corner] : kNone;
+    const CornerKey key{scene_.lit() ? p : welded_[p], texcoord, material, two_words(n.x, n.y),
+                        two_words(n.z, 0)};
+    std::uint32_t& vertex =
+        first_.find(hash_words(key), [&](std::uint32_t v) { return keys_[v] == key; });
+    if (vertex != FirstIndex::kNone) return vertex;
+    vertex = std::uint32_t(keys_.size());
+    keys_.push_back(key);
     view_.positions.push_back(scene_.positions[p]);
     view_.normals.push_back(from_glm(n));
-    view_.colours.push_back(scene_.materials[key.material].diffuse);
-    if (emits_) view_.emission.push_back(plain_emission(scene_.materials[key.material]));
+    view_.colours.push_back(scene_.materials[material].diffuse);
+    if (emits_) view_.emission.push_back(plain_emission(scene_.materials[material]));
     if (textured_)
-      view_.texcoords.push_back(key.texcoord == kNone ? Vec2f{} : scene_.texcoords[key.texcoord]);
+      view_.texcoords.push_back(texcoord == kNone ? Vec2f{} : scene_.texcoords[texcoord]);
     if (scene_.lit()) view_.illumination.push_back(scene_.illumination[p]);
-    return it->second;
+    return vertex;
   }
 
   // Computes a sphere around the centre of the cluster's box.
@@ -246,7 +235,8 @@ class Builder {
   float cosine_;
   bool textured_ = false, emits_ = false, baked_ = false;
   ViewScene view_;
-  std::unordered_map<CornerKey, std::uint32_t, CornerHash> known_;
+  FirstIndex first_;             // into keys_
+  std::vector<CornerKey> keys_;  // of view_'s vertices
 };
 
 double light_scale(const std::vector<Vec3f>& illumination) {

@@ -1,12 +1,11 @@
 #include "libatlas/charts/mesh/weld.h"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
-#include <cstring>
 #include <limits>
 
 #include "libatlas/core/drop_rounding.h"
+#include "libatlas/core/first_index.h"
 #include "libatlas/core/glm_bridge.h"
 
 namespace atlas {
@@ -25,13 +24,6 @@ double unit_scale(std::span<const Vec3f> positions, std::span<const std::uint8_t
   return size > 0 ? std::ldexp(1.0, -std::ilogb(size)) : 1.0;
 }
 
-std::uint64_t hash_position(const std::uint32_t (&key)[3]) {
-  std::uint64_t h = key[0] * 0x9e3779b97f4a7c15ull;
-  h = (h ^ (h >> 32) ^ key[1]) * 0xd6e8feb86659fd93ull;
-  h = (h ^ (h >> 32) ^ key[2]) * 0xd6e8feb86659fd93ull;
-  return h ^ (h >> 32);
-}
-
 }  // namespace
 
 std::vector<std::uint8_t> used_vertices(std::span<const std::uint32_t> indices, std::size_t count) {
@@ -45,26 +37,20 @@ WeldedVertices weld_vertices(std::span<const Vec3f> positions, std::span<const s
   welded.scale = unit_scale(positions, used);
   const double size = 1 / welded.scale;
   const std::size_t n = positions.size();
-  const std::size_t capacity = std::bit_ceil(std::max<std::size_t>(16, 2 * n));
-  std::vector<std::uint32_t> table(capacity, kNoIndex);
+  FirstIndex first(n);
   welded.place.assign(n, kNoIndex);
   for (std::uint32_t v = 0; v < n; ++v) {
     if (!used[v]) continue;
     const Vec3f& at = positions[v];
     const Vec3f p{drop_rounding(at.x, size), drop_rounding(at.y, size), drop_rounding(at.z, size)};
-    std::uint32_t key[3];
-    std::memcpy(key, &p, sizeof key);
-    std::size_t slot = hash_position(key) & (capacity - 1);
-    for (;; slot = (slot + 1) & (capacity - 1)) {
-      if (table[slot] == kNoIndex) {
-        table[slot] = static_cast<std::uint32_t>(welded.source.size());
-        welded.source.push_back(v);
-        welded.points.push_back(p);
-        break;
-      }
-      if (welded.points[table[slot]] == p) break;
+    std::uint32_t& point = first.find(hash_words<3>({word_of(p.x), word_of(p.y), word_of(p.z)}),
+                                      [&](std::uint32_t i) { return welded.points[i] == p; });
+    if (point == FirstIndex::kNone) {
+      point = static_cast<std::uint32_t>(welded.source.size());
+      welded.source.push_back(v);
+      welded.points.push_back(p);
     }
-    welded.place[v] = table[slot];
+    welded.place[v] = point;
   }
   return welded;
 }
