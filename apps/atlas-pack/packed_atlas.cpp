@@ -81,7 +81,8 @@ std::string to_json(const PackedAtlas& atlas, DataFormat format, std::uint32_t p
     if (!item.at.placed() || (page != kAllPages && item.at.page != page)) continue;
     Json frame = frame_of(item, page == kAllPages);
     if (format == DataFormat::hash) {
-      frames[item.name] = std::move(frame);
+      // The members are searched from front to back when one is set by name. Names are unique.
+      frames.get_ref<Json::object_t&>().emplace_back(item.name, std::move(frame));
     } else {
       Json named{{"filename", item.name}};
       named.update(frame);

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
 #include <string_view>
@@ -134,23 +135,32 @@ void add_shadow_options(CLI::App& app, CommandLine& l) {
   add_off_flag(app, "--no-slices", l.render.schedule.sliced, "draw a key in one frame");
 }
 
-// Texts that become the light's path once all options are known.
+enum class Axis { x, y, z };
+
+// What becomes the light's path once all options are known.
 struct LightText {
-  std::string path = "sun:172,50.45,9", end = "loop", up = "y";
+  std::string path = "sun:172,50.45,9";
+  PathEnd end = PathEnd::loop;
+  Axis up = Axis::y;
 };
 
 void add_light_options(CLI::App& app, CommandLine& l, LightText& light) {
   const OptionGroup group(app, "Moving light");
+  const std::map<std::string, PathEnd> ends = {
+      {"loop", PathEnd::loop}, {"back", PathEnd::back}, {"stop", PathEnd::stop}};
+  const std::map<std::string, Axis> axes = {{"x", Axis::x}, {"y", Axis::y}, {"z", Axis::z}};
   app.add_option("--light", light.path,
                  "sun:DAY,LATITUDE,HOUR  fixed:x,y,z  line:x,y,z;x,y,z  arc:x,y,z;x,y,z  "
                  "keys:x,y,z;x,y,z;...")
       ->capture_default_str();
   app.add_option("--light-end", light.end, "at the path's end: loop, back or stop")
-      ->check(one_of({{"loop", 0}, {"back", 0}, {"stop", 0}}))
-      ->capture_default_str();
+      ->transform(choices(ends))
+      ->type_name("TEXT")
+      ->default_str("loop");
   app.add_option("--up", light.up, "the axis that points up (default: z for worlds that say so)")
-      ->check(one_of({{"x", 0}, {"y", 0}, {"z", 0}}))
-      ->capture_default_str();
+      ->transform(choices(axes))
+      ->type_name("TEXT")
+      ->default_str("y");
   app.add_option("--north", l.north,
                  "the sun's north, x,y,z (default: -z where y is up, +y where x or z is)")
       ->delimiter(',')
@@ -233,14 +243,13 @@ std::string about_running(const CLI::App& app, const CommandLine& l) {
 
 // Interprets the texts that CLI11 cannot turn into their values itself.
 Status finish(CommandLine& l, const LightText& light) {
-  const std::string &up = light.up, &end = light.end;
-  const Vec3d axis = up == "x" ? Vec3d{1, 0, 0} : up == "y" ? Vec3d{0, 1, 0} : Vec3d{0, 0, 1};
-  l.render.up = axis;
+  constexpr std::array<Vec3d, 3> kAxes = {{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
+  l.render.up = kAxes[static_cast<std::size_t>(light.up)];
   LightPathOptions path;
-  path.sun.up = axis;
-  path.sun.north = up == "z" ? Vec3d{0, 1, 0} : up == "y" ? Vec3d{0, 0, -1} : Vec3d{0, 1, 0};
+  path.sun.up = l.render.up;
+  path.sun.north = light.up == Axis::y ? Vec3d{0, 0, -1} : Vec3d{0, 1, 0};
   if (l.north.size() == 3) path.sun.north = {l.north[0], l.north[1], l.north[2]};
-  path.end = end == "loop" ? PathEnd::loop : end == "back" ? PathEnd::back : PathEnd::stop;
+  path.end = light.end;
   Result<LightPathOptions> parsed = parse_light_path(light.path, path);
   const Result<LightPath> made = parsed.ok() ? LightPath::make(*parsed) : parsed.status();
   if (!made.ok()) {  // "light path 'moon': ..." or "light path: ..."
@@ -305,7 +314,7 @@ Parsed parse_command_line(int argc, char** argv) {
     parsed.exit_code = 2;
     return parsed;
   }
-  if (app.count("--up") == 0 && world_is_z_up(l.scene)) light.up = "z";
+  if (app.count("--up") == 0 && world_is_z_up(l.scene)) light.up = Axis::z;
   if (l.in_window() && app.count("--width") == 0) l.render.width = kWindowWidth;
   if (l.in_window() && app.count("--height") == 0) l.render.height = kWindowHeight;
   if (Status s = finish(l, light); !s.ok()) {

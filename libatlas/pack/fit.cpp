@@ -44,18 +44,27 @@ std::vector<Extent> smaller_pages(const FitOptions& options) {
 
 namespace {
 
-Status check(std::span<const FitItem> items, const FitOptions& o) {
+Status check_pages(const FitOptions& o) {
   if (o.max_packings < 2)
     return {ErrorCode::bad_option,
             fmt::format("fit: max_packings is {} (at least 2)", o.max_packings)};
   if (o.pages == 0) return {ErrorCode::bad_option, "fit: pages is 0 (ask for at least one)"};
-  if (o.alignment < 1 || o.padding < 0 || o.page_size < o.alignment + 2 * o.padding ||
-      o.page_size > (1 << 20) || o.minimum_side < 0)
-    return {
-        ErrorCode::bad_option,
-        fmt::format("fit: page_size {}, padding {}, alignment {} and minimum_side {} do not go "
-                    "together (page_size in [alignment + 2 padding, 2^20], others not negative)",
-                    o.page_size, o.padding, o.alignment, o.minimum_side)};
+  constexpr std::int32_t kLongest = 1 << 20;
+  if (o.page_size < 1 || o.page_size > kLongest)
+    return {ErrorCode::bad_option,
+            fmt::format("fit: page_size is {} (1 .. {})", o.page_size, kLongest)};
+  if (o.padding < 0 || o.alignment < 1 || o.minimum_side < 0)
+    return {ErrorCode::bad_option,
+            fmt::format("fit: padding {}, alignment {}, minimum_side {} (alignment at least 1, the "
+                        "others at least 0)",
+                        o.padding, o.alignment, o.minimum_side)};
+  if (o.alignment > o.page_size || o.padding > (o.page_size - o.alignment) / 2)
+    return {ErrorCode::bad_option,
+            fmt::format("fit: padding {} on both sides and alignment {} leave no room on pages of "
+                        "{} texels (use larger pages)",
+                        o.padding, o.alignment, o.page_size)};
+  if (!(o.time_budget >= 0))
+    return {ErrorCode::bad_option, "fit: time_budget is negative or not a number"};
   const bool power_of_two = o.power_of_two && !o.free_aspect;
   if (power_of_two && !std::has_single_bit(static_cast<std::uint32_t>(o.page_size)))
     return {ErrorCode::bad_option,
@@ -63,6 +72,11 @@ Status check(std::span<const FitItem> items, const FitOptions& o) {
                         std::bit_floor(static_cast<std::uint32_t>(o.page_size)))};
   if (power_of_two && !std::has_single_bit(static_cast<std::uint32_t>(o.alignment)))
     return {ErrorCode::bad_option, "fit: with power-of-two pages the alignment must be one too"};
+  return {};
+}
+
+Status check(std::span<const FitItem> items, const FitOptions& o) {
+  if (Status s = check_pages(o); !s.ok()) return s;
   if (!(o.max_scale > 0) || !std::isfinite(o.max_scale))
     return {ErrorCode::bad_option, "fit: max_scale must be finite and above 0"};
   if (!o.shapes.empty()) {

@@ -22,7 +22,7 @@ struct FitItem {
 
 struct FitOptions {
   std::uint32_t pages = 1;        // N, at least 1
-  std::int32_t page_size = 2048;  // S in texels; at least alignment + 2 padding
+  std::int32_t page_size = 2048;  // S in texels; alignment + 2 padding .. 2^20
   // Page sides are powers of two <= S; otherwise multiples of alignment.
   bool power_of_two = true;
   bool square = false;
@@ -63,7 +63,7 @@ struct FitOptions {
   double wanted_fill = 0;
   // Limits of `best` on a single page of outlines. The result depends on effort and seed only,
   // unless effort is 0 and time is the limit.
-  double time_budget = 1.0;  // wall time in seconds
+  double time_budget = 1.0;  // wall time in seconds, at least 0 or infinite
   // Maximum number of layouts that are tried; 0: no limit. It is checked every few hundred layouts.
   // A layout that takes long counts as several.
   std::uint64_t effort = 0;
@@ -92,7 +92,7 @@ struct FitProgress {
 // keep their proportions.
 struct FitPlacement {
   std::uint32_t page = 0;
-  Rect box;
+  Rect box = {};
   std::int32_t content_width = 0, content_height = 0;
   bool rotated = false;
   double angle = 0;  // in radians, counterclockwise; 0 or pi/2 for boxes
@@ -101,26 +101,27 @@ struct FitPlacement {
   // own, which is the content divided by the size at scale 1; rounding up and minimum_side make it
   // larger.
   double scale = 1;
-  Vec2d offset;  // set for outlines only
+  Vec2d offset = {};  // set for outlines only
 };
 
 struct FitResult {
   double scale = 1;
-  std::vector<FitPlacement> placements;  // one per item
-  std::vector<Extent> pages;             // the pages that hold something; at most N
+  std::vector<FitPlacement> placements = {};  // one per item
+  std::vector<Extent> pages = {};             // the pages that hold something; at most N
   // Area of the contents (boxes) or shapes (outlines) / area of the pages.
   double utilization = 0;
   double box_utilization = 0;  // area of the boxes with gutters / area of the pages; boxes only
   // The area of small holes and narrow bays in shapes in which no shape could lie, in square texels
   // at scale 1. Set for outlines only.
   double lost_area = 0;
-  GroupingResult grouping;        // the grouping of the box areas at the final scale
+  GroupingResult grouping = {};   // the grouping of the box areas at the final scale
   std::uint32_t moved_items = 0;  // number of items that did not fit their group's page
   std::uint32_t packings = 0;     // number of full packings tried
   // Number of layouts of outlines on one page that were tried in total.
   std::uint64_t layouts = 0;
-  std::vector<std::pair<double, bool>> trace;  // (scale, whether it fitted), in the order tried
-  std::vector<FitProgress> curve;              // the improvements, in the order found; may be empty
+  // (scale, whether it fitted), in the order tried.
+  std::vector<std::pair<double, bool>> trace = {};
+  std::vector<FitProgress> curve = {};  // the improvements, in the order found; may be empty
 };
 
 // Finds the largest common scale <= max_scale at which every item fits. At each scale it groups the

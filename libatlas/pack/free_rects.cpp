@@ -144,6 +144,36 @@ void FreeRects::keep_maximal() {
   std::inplace_merge(free_.begin(), free_.begin() + middle, free_.end(), below_left);
 }
 
+// Returns the maximal free rectangles that meet `rect`. While others are placed on an empty page,
+// pieces that do not meet `rect` are dropped, because all that is cut from them would not, either.
+std::vector<Rect> FreeRects::free_around(const Rect& rect) const {
+  FreeRects around(page_);
+  around.drop_smaller(min_width_, min_height_);
+  for (const Rect& other : placed_) {
+    const auto meets = [&](const Rect& f) { return intersect(f, other); };
+    if (std::none_of(around.free_.begin(), around.free_.end(), meets)) continue;
+    around.place(other);
+    std::erase_if(around.free_, [&](const Rect& f) { return !intersect(f, rect); });
+  }
+  return around.free_;
+}
+
+void FreeRects::take_away(const Rect& rect) {
+  placed_.erase(std::find(placed_.begin(), placed_.end(), rect));
+  used_height_ = 0;
+  for (const Rect& p : placed_) used_height_ = std::max(used_height_, p.top());
+  fresh_ = free_around(rect);
+  // None of these lies within another free rectangle, since only these meet `rect`.
+  std::erase_if(free_, [&](const Rect& f) {
+    return std::any_of(fresh_.begin(), fresh_.end(),
+                       [&](const Rect& larger) { return contains(larger, f); });
+  });
+  const std::size_t middle = free_.size();
+  free_.insert(free_.end(), fresh_.begin(), fresh_.end());
+  std::inplace_merge(free_.begin(), free_.begin() + middle, free_.end(), below_left);
+  measure_room();
+}
+
 void FreeRects::drop_smaller(std::int32_t width, std::int32_t height) {
   if (width <= min_width_ && height <= min_height_) return;
   min_width_ = std::max(min_width_, width);

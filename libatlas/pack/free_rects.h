@@ -54,6 +54,10 @@ class FreeRects {
   void place(const Rect& rect);
   void block(const Rect& rect) { place(rect); }
 
+  // Frees a rectangle that was placed. The free rectangles are then those of a page on which it
+  // never was.
+  void take_away(const Rect& rect);
+
   // Removes free rectangles that are too small for every item of at least these sides.
   void drop_smaller(std::int32_t width, std::int32_t height);
 
@@ -65,6 +69,7 @@ class FreeRects {
   std::int64_t contact_length(const Rect& rect) const;
   void split(const Rect& free, const Rect& taken);
   void keep_maximal();
+  std::vector<Rect> free_around(const Rect& rect) const;
   void measure_room();
 
   Extent page_;

@@ -39,20 +39,17 @@ struct AtlasLayout::State {
     return free;
   }
 
-  // Makes the free rectangles of a page anew from its items. They cannot be updated locally after
-  // an item was removed, because the maximal rectangles that it cut cannot be joined again.
+  // Makes the free rectangles of a page from its items.
   void rebuild(std::uint32_t p) {
     pages[p] = fresh_page(p);
     for (std::uint32_t id : on_page[p]) pages[p].place(box_of(items[id]));
     index.update(p, pages[p].room());
-    stale[p] = false;
   }
 
   void open_page() {
     const auto p = static_cast<std::uint32_t>(pages.size());
     pages.push_back(fresh_page(p));
     on_page.emplace_back();
-    stale.push_back(false);
     index.push_back(pages.back().room());
   }
 
@@ -64,7 +61,6 @@ struct AtlasLayout::State {
   std::size_t present = 0;
   std::vector<FreeRects> pages;
   std::vector<std::vector<std::uint32_t>> on_page;  // ids of the items with area, by page
-  std::vector<bool> stale;                          // an item was removed since the last rebuild
   pack::PageIndex index;
 };
 
@@ -104,8 +100,6 @@ Result<std::uint32_t> AtlasLayout::insert(Extent item) {
                               item.width, item.height));
   const Extent cells{static_cast<std::int32_t>(w), static_cast<std::int32_t>(h)};
   const std::uint32_t limit = s.options.max_pages ? s.options.max_pages : kNoPage;
-  for (std::uint32_t p = 0; p < s.pages.size(); ++p)
-    if (s.stale[p]) s.rebuild(p);
   for (std::size_t p = 0;; ++p) {
     p = s.index.next(p, cells, s.options.allow_rotation);
     if (p == s.pages.size()) {
@@ -138,8 +132,10 @@ bool AtlasLayout::remove(std::uint32_t id) {
   item.present = false;
   --s.present;
   if (item.size.area() == 0) return true;
-  std::erase(s.on_page[item.at.page], id);
-  s.stale[item.at.page] = true;
+  const std::uint32_t page = item.at.page;
+  std::erase(s.on_page[page], id);
+  s.pages[page].take_away(s.box_of(item));
+  s.index.update(page, s.pages[page].room());
   return true;
 }
 
@@ -161,7 +157,6 @@ Status AtlasLayout::repack(const Context& context) {
                     packed->unplaced.size())};
   s.pages.clear();
   s.on_page.clear();
-  s.stale.clear();
   s.index = {};
   for (std::size_t k = 0; k < ids.size(); ++k) {
     State::Item& item = s.items[ids[k]];

@@ -11,7 +11,8 @@ namespace atlas {
 // Pages of fixed size into which rectangles are inserted one by one, from which they are removed,
 // and which can be packed anew. Uses options.page (both sides must be given), max_pages,
 // allow_rotation, padding, border, alignment, preset (for repack) and pinned. Ids count up from 0
-// in the order of insertion and are never reused. Not thread-safe.
+// in the order of insertion and are never reused. Inserting or removing an item takes time in
+// proportion to the items of its page at most. Not thread-safe.
 class AtlasLayout {
  public:
   // Errors: bad_option (as for pack_rects, and if a side of the page is open).

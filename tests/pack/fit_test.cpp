@@ -1,5 +1,6 @@
 #include "libatlas/pack/fit.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -241,6 +242,31 @@ TEST(FitPages, Failures) {
   o.page_size = 60;
   EXPECT_EQ(fit_pages(many, o, {}).status().code(), ErrorCode::bad_option);
   EXPECT_TRUE(fit_pages({}, {}, {}).ok());
+}
+
+// A padding this large overflowed when it was doubled, and a negative budget never ended.
+TEST(FitPages, OptionsOutOfRange) {
+  const std::vector<FitItem> one{{4, 4}};
+  const auto refused = [&](auto change) {
+    FitOptions o;
+    o.page_size = 64;
+    change(o);
+    const Result<FitResult> fit = fit_pages(one, o, {});
+    return fit.ok() ? "" : std::string(fit.status().message());
+  };
+  EXPECT_EQ(refused([](FitOptions&) {}), "");
+  EXPECT_EQ(refused([](FitOptions& o) { o.page_size = (1 << 20) + 1; }),
+            "fit: page_size is 1048577 (1 .. 1048576)");
+  EXPECT_EQ(refused([](FitOptions& o) { o.padding = 30; }), "");
+  for (const std::int32_t padding : {31, 1 << 30})
+    EXPECT_EQ(refused([&](FitOptions& o) { o.padding = padding; }),
+              fmt::format("fit: padding {} on both sides and alignment 4 leave no room on pages of "
+                          "64 texels (use larger pages)",
+                          padding));
+  EXPECT_NE(refused([](FitOptions& o) { o.alignment = 1 << 30; }), "");
+  for (const double budget : {-1.0, std::nan("")})
+    EXPECT_EQ(refused([&](FitOptions& o) { o.time_budget = budget; }),
+              "fit: time_budget is negative or not a number");
 }
 
 // Gutters that take the very last texel leave none for a chart.

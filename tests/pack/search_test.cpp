@@ -22,14 +22,27 @@ TEST(FreeRects, HoldExactlyTheMaximalRectangles) {
   for (int round = 0; round < 200; ++round) {
     constexpr int n = 9;
     FreeRects page({n, n});
-    bool taken[n][n] = {};
+    int taken[n][n] = {};  // by how many rectangles
+    int top = 0;
+    const auto mark = [&](const Rect& r, int step) {
+      for (int y = r.y; y < r.top(); ++y)
+        for (int x = r.x; x < r.right(); ++x) taken[y][x] += step;
+    };
+    std::vector<Rect> gone;
     for (int k = noise.in(1, 6); k > 0; --k) {
       const int x = noise.in(0, n - 1), y = noise.in(0, n - 1);
       const Rect r{x, y, noise.in(1, n - x), noise.in(1, n - y)};
       page.place(r);
-      for (int yy = r.y; yy < r.top(); ++yy)
-        for (int xx = r.x; xx < r.right(); ++xx) taken[yy][xx] = true;
+      mark(r, 1);
+      if (noise.in(0, 2) == 0) gone.push_back(r);
     }
+    for (const Rect& r : gone) {
+      page.take_away(r);
+      mark(r, -1);
+    }
+    for (int y = 0; y < n; ++y)
+      if (std::any_of(taken[y], taken[y] + n, [](int t) { return t > 0; })) top = y + 1;
+    ASSERT_EQ(page.used_height(), top);
     const auto is_free = [&](int x0, int y0, int x1, int y1) {
       if (x0 < 0 || y0 < 0 || x1 > n || y1 > n) return false;
       for (int y = y0; y < y1; ++y)

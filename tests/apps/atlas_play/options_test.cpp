@@ -204,7 +204,8 @@ TEST(PlayOptions, TheSunFollowsTheAxesOfTheScene) {
     Vec3d axis, north;
   };
   for (const Case& c : {Case{"x", {1, 0, 0}, {0, 1, 0}}, Case{"y", {0, 1, 0}, {0, 0, -1}},
-                        Case{"z", {0, 0, 1}, {0, 1, 0}}}) {
+                        Case{"z", {0, 0, 1}, {0, 1, 0}}, Case{"X", {1, 0, 0}, {0, 1, 0}},
+                        Case{"Y", {0, 1, 0}, {0, 0, -1}}}) {
     const auto [up, sun] = noon({"--up", c.up});
     expect_near(up, c.axis, c.up);
     const Vec3d wanted{h * (c.axis.x - c.north.x), h * (c.axis.y - c.north.y),
@@ -230,6 +231,7 @@ TEST(PlayOptions, TheLightLoopsGoesBackOrStops) {
   EXPECT_EQ(after({"--light-end", "loop"}), 10);
   EXPECT_EQ(after({"--light-end", "back"}), 80);
   EXPECT_EQ(after({"--light-end", "stop"}), 90);
+  EXPECT_EQ(after({"--light-end", "Back"}), 80);
 }
 
 // Worlds of atlas-export say that z points up; the option has the last word.
