@@ -148,9 +148,7 @@ void add_page_options(CLI::App& app, ExportOptions& options) {
   add_off_flag(app, "--boxes", options.outlines,
                "Pack the charts' boxes only; else outlines too, and the better of both is kept");
   add_off_flag(app, "--no-simplify", options.simplify,
-               "Write the scene's own triangles, not the coarser mesh")
-      ->excludes(app.add_flag_callback(
-          "--simplify", [] {}, "Write the coarser mesh (the default)"));
+               "Write the scene's own triangles, not the coarser mesh");
   app.add_option("--slip", options.simplify_slip,
                  "How far the coarser mesh and its texture may slip, texels")
       ->capture_default_str()

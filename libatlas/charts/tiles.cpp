@@ -345,6 +345,9 @@ Result<std::size_t> cut_to_limits(const MeshView& mesh, const TileLimits& limits
   }
   if (charts.triangle_uv.size() != mesh.indices.size())
     return Status(ErrorCode::bad_input, "tiles: the charts are not those of the mesh");
+  if (!(limits.max_stretch > 1))
+    return Status(ErrorCode::bad_option,
+                  fmt::format("tiles: max_stretch is {} (above 1)", limits.max_stretch));
   const auto too_long = [&](std::size_t c) { return old[c].size.x > limits.sides[c]; };
   std::size_t first = 0;
   while (first < old.size() && !too_long(first)) ++first;

@@ -12,8 +12,8 @@ namespace atlas {
 
 struct TileLimits {
   // Of charts' boxes, scene units; one per chart, > 0 (any for points).
-  std::span<const double> sides;
-  double max_stretch = 1.25;  // of pieces: ChartOptions::max_stretch
+  std::span<const double> sides = {};
+  double max_stretch = 1.25;  // of pieces, > 1: ChartOptions::max_stretch
 };
 
 // Cuts every chart whose box is longer than its limit across its long side, repeatedly, until the
@@ -26,7 +26,7 @@ struct TileLimits {
 // measured again, and so is the total. Charts within their limit keep their order; pieces take the
 // place of their parent. Returns how many charts were cut. The result is the same for every thread
 // count. Errors: bad_input (not one limit per chart, or one that is not above 0; charts of
-// another mesh); cancelled. The charts are then unchanged.
+// another mesh); bad_option (max_stretch); cancelled. The charts are then unchanged.
 Result<std::size_t> cut_to_limits(const MeshView& mesh, const TileLimits& limits, ChartSet& charts,
                                   const Context& context);
 

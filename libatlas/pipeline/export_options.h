@@ -40,8 +40,9 @@ struct ExportOptions {
   // 10 mm (paper, stage 2), or finer for scenes of centimetres.
   double texel_metres = 0;
   bool follow_textures = true;   // use finer texels where the diffuse texture is finer
-  double threshold = 2.0 / 255;  // of downsizing, in display values; 0: no downsizing
-  std::int32_t min_side = 16;    // downsizing makes no side shorter, texels
+  double threshold = 2.0 / 255;  // of downsizing, in display values, 0..1; 0: no downsizing
+  // Downsizing makes no side shorter, texels; 1..256, and at most what gutters leave of a page.
+  std::int32_t min_side = 16;
   Quantity quantity = Quantity::illuminance;
   // A chart does not continue across a crease at which the light jumps visibly. Not with
   // ChartOptions::keep_uv_charts.
@@ -49,8 +50,9 @@ struct ExportOptions {
   ChartOptions charts = {};
   ToneOptions tone = {};
 
-  std::int32_t mip_levels = 2;  // lookups at levels 0..mip_levels read only the chart's texels
-  std::int32_t shifts = 4;      // number of sub-texel sample grids for baking
+  // Lookups at levels 0..mip_levels read only the chart's texels; 0..5.
+  std::int32_t mip_levels = 2;
+  std::int32_t shifts = 4;  // number of sub-texel sample grids for baking, 1..64
   BakeMethod bake_method = BakeMethod::least_squares;
   PackPreset packing = PackPreset::standard;
   bool outlines = true;  // pack charts by outlines if that is better than by boxes

@@ -154,10 +154,10 @@ class Export {
   Status cut_long_charts() {
     const Context& context = record_.begin("tiling");
     const TextureOptions texture = texture_options(plan_, report_, options_);
-    const std::vector<double> densities = wanted_densities(*light_, texture, context);
-    if (context.cancelled()) return Status::cancelled();
+    const Result<std::vector<double>> densities = wanted_densities(*light_, texture, context);
+    if (!densities.ok()) return densities.status();
     const std::size_t before = charts_.charts.size();
-    const std::vector<double> sides = longest_sides(charts_, densities, {texture, options_});
+    const std::vector<double> sides = longest_sides(charts_, *densities, {texture, options_});
     const Result<std::size_t> cut =
         cut_to_limits(view_of(scene_), {sides, options_.charts.max_stretch}, charts_, context);
     if (!cut.ok()) return cut.status();
@@ -314,22 +314,38 @@ class Export {
                          : fine.view();
     if (plan_.bake) mesh.one_sided = one_sided_triangles(scene_, charts_, mesh, context);
     if (context.cancelled()) return Status::cancelled();
-    AssembledWorld assembled =
-        assemble_world(scene_, {charts_, layout_.placements, layout_.pages}, mesh, plan_.bake);
-    World& world = assembled.world;
+    report_.triangles_out = mesh.triangle_chart.size();
+    const World world = make_world(mesh, context);
+    Result<WorldFile> world_file = write_world(world, options_.target, files_, context);
+    if (!world_file.ok()) return world_file.status();
+    report_.not_kept = world_file->not_kept;
+    if (lower_extension(options_.target) == ".glb") {  // embeds its images
+      for (const auto& image : image_sources_) files_.discard(image);
+      for (PageReport& page : report_.pages) page.image.clear();
+    }
+    if (context.cancelled()) return Status::cancelled();
+    std::uint64_t bytes = 0;
+    if (Status s = commit_files(bytes); !s.ok()) return s;
+    record_.finish({report_.triangles_out, bytes, "bytes", writing_note(*world_file)});
+    return {};
+  }
+
+  World make_world(const WorldMesh& mesh, const Context& context) {
+    const PlacedCharts placed{charts_, layout_.placements, layout_.pages};
+    AssembledWorld assembled = assemble_world(scene_, placed, mesh, plan_.bake);
+    World world = std::move(assembled.world);
     report_.thin_triangles = assembled.thin_triangles;
     if (!plan_.bake) {
-      const PlacedCharts placed{charts_, layout_.placements, layout_.pages};
       // After a move, the texels that a chart owns for its mip levels would reach a texel further.
       const DrawnTwice drawn = options_.plain_mip_levels == 0
                                    ? draw_once(placed, mesh.uv_indices, world.uvs, context)
                                    : drawn_twice(placed, mesh.uv_indices, world.uvs, context);
       report_.texels_drawn_twice = drawn.after;
+      world.info.push_back(plain_pages_text(layout_.pages));
     }
     world.up = options_.up;
     world.title = options_.target.stem().string();
     world.metres_per_unit = scene_.metres_per_unit;
-    if (!plan_.bake) world.info.push_back(plain_pages_text(layout_.pages));
     if (options_.keep_scene) {
       keep_scene(scene_, charts_, world);
     } else if (holds_viewpoint(options_.target)) {
@@ -342,25 +358,19 @@ class Export {
       world.pages[p].image = report_.pages[p].image;
       world.pages[p].image_source = image_sources_[p];
     }
-    report_.triangles_out = mesh.triangle_chart.size();
-    Result<WorldFile> world_file = write_world(world, options_.target, files_, context);
-    if (!world_file.ok()) return world_file.status();
-    report_.not_kept = world_file->not_kept;
-    if (lower_extension(options_.target) == ".glb") {  // embeds its images
-      for (const auto& image : image_sources_) files_.discard(image);
-      for (PageReport& page : report_.pages) page.image.clear();
-    }
-    if (context.cancelled()) return Status::cancelled();
+    return world;
+  }
+
+  // Gives all files their names, and adds their sizes to the report and up to `bytes`.
+  Status commit_files(std::uint64_t& bytes) {
     const std::vector<std::filesystem::path> written = files_.targets();
     if (Status s = files_.commit(); !s.ok()) return s;
-    std::uint64_t bytes = 0;
     for (const auto& path : written) {
       std::error_code error;
       const auto size = std::filesystem::file_size(path, error);
       report_.files.emplace_back(path.filename().string(), error ? 0 : size);
       bytes += report_.files.back().second;
     }
-    record_.finish({report_.triangles_out, bytes, "bytes", writing_note(*world_file)});
     return {};
   }
 

@@ -40,12 +40,12 @@ struct LayoutOptions {
 };
 
 struct PageLayout {
-  std::vector<ChartPlacement> placements;  // one per chart
-  std::vector<Extent> pages;               // texels
-  bool outlines = false;                   // the charts were packed by outlines
-  double scale = 1;                        // common to all densities
-  double utilization = 0;                  // as in FitResult
-  double uv_utilization = 0;               // area of the charts / area of the pages
+  std::vector<ChartPlacement> placements = {};  // one per chart
+  std::vector<Extent> pages = {};               // texels
+  bool outlines = false;                        // the charts were packed by outlines
+  double scale = 1;                             // common to all densities
+  double utilization = 0;                       // as in FitResult
+  double uv_utilization = 0;                    // area of the charts / area of the pages
   // The area of the charts together with their small holes and narrow bays, which are lost because
   // no chart could lie in them, divided by the area of the charts alone. It is 1 if outlines were
   // not tried.
@@ -53,7 +53,7 @@ struct PageLayout {
   std::uint64_t layouts = 0;  // how many layouts of outlines were tried
   // The factor by which more effort made a poorly filled page fuller; 0 if none was spent.
   double won = 0;
-  GroupingResult grouping;
+  GroupingResult grouping = {};
 };
 
 // Returns the texels per unit at which the charts would cover `texels` texels if they left no gaps
@@ -68,7 +68,7 @@ Result<PageLayout> lay_out_pages(const ChartSet& charts, std::span<const Vec2d> 
 // The charts to place, and their densities.
 struct WantedCharts {
   const ChartSet& charts;
-  std::span<const Vec2d> texels_per_unit;  // one per chart, > 0
+  std::span<const Vec2d> texels_per_unit = {};  // one per chart, > 0
 };
 
 // Does the same as lay_out_pages() if `unpressed` is what it returned without press_pages for the

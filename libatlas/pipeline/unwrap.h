@@ -47,22 +47,23 @@ struct UnwrapOptions {
 // Each vertex is a copy of one of the input's vertices. A vertex on a seam has a copy for each
 // side.
 struct UnwrappedMesh {
-  std::vector<std::uint32_t> vertices;  // one per vertex: the input vertex that it copies
-  std::vector<Vec2f> uvs;               // one per vertex: 0..1 over its page, origin bottom left
-  std::vector<std::uint32_t> indices;   // three per triangle, input order; into vertices and uvs
-  std::vector<std::uint32_t> triangle_page;  // one per triangle, into pages
-  std::vector<Extent> pages;                 // texels
-  double texels_per_unit = 0;                // the density that was reached
-  double utilization = 0;                    // area of the charts / area of the pages
-  std::uint64_t thin_triangles = 0;          // slivers that rounding to floats closes or turns over
+  std::vector<std::uint32_t> vertices = {};  // one per vertex: the input vertex that it copies
+  std::vector<Vec2f> uvs = {};  // one per vertex: 0..1 over its page, origin bottom left
+  // Three per triangle, input order; into vertices and uvs.
+  std::vector<std::uint32_t> indices = {};
+  std::vector<std::uint32_t> triangle_page = {};  // one per triangle, into pages
+  std::vector<Extent> pages = {};                 // texels
+  double texels_per_unit = 0;                     // the density that was reached
+  double utilization = 0;                         // area of the charts / area of the pages
+  std::uint64_t thin_triangles = 0;  // slivers that rounding to floats closes or turns over
   // How many texels have centres that more than one triangle covers once corners are rounded to
   // 1/256 of a texel, as graphics hardware does. There are none except with very many slivers, or
   // where mip levels leave no spare padding within which charts could be moved by fractions of a
   // texel.
   std::uint64_t texels_drawn_twice = 0;
-  GapReport gaps;   // in texels: what part_gaps left; zeros without part_gaps
-  ChartSet charts;  // with what was measured on them: distortion, seams
-  std::vector<ChartPlacement> placements;  // one per chart
+  GapReport gaps = {};   // in texels: what part_gaps left; zeros without part_gaps
+  ChartSet charts = {};  // with what was measured on them: distortion, seams
+  std::vector<ChartPlacement> placements = {};  // one per chart
 };
 
 // Unwraps a mesh. Nothing is left out: triangle t of the input is triangle t of the result, with

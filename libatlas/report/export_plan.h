@@ -10,13 +10,13 @@
 namespace atlas {
 
 struct PlanStep {
-  std::string stage;
+  std::string stage = {};
   bool run = true;
-  std::string reason;  // why the stage runs or is skipped, with the figures that decide it
+  std::string reason = {};  // why the stage runs or is skipped, with the figures that decide it
 };
 
 struct ExportPlan {
-  std::vector<PlanStep> steps;
+  std::vector<PlanStep> steps = {};
   double surface_area_m2 = 0;
   double texel_metres = 0;  // ExportOptions::texel_metres, or the length chosen if that is 0
   // Before downsizing, with texels of texel_metres, or finer ones where textures ask for them.

@@ -22,16 +22,16 @@ namespace atlas {
 
 // The cost of one stage. size_in and size_out count items of the kind that the stage handles.
 struct StageReport {
-  std::string stage;
+  std::string stage = {};
   double wall_seconds = 0, cpu_seconds = 0;
   std::int64_t peak_memory = 0;  // of the process until the end of the stage, bytes
   std::uint64_t size_in = 0, size_out = 0;
-  std::string unit;     // what size_out counts, such as "charts"
-  std::string quality;  // one phrase with the figure that matters
+  std::string unit = {};     // what size_out counts, such as "charts"
+  std::string quality = {};  // one phrase with the figure that matters
 };
 
 struct PageReport {
-  std::string image;  // file name; empty without baked light, or if the target embeds images
+  std::string image = {};  // file name; empty without baked light, or if the target embeds images
   std::int32_t width = 0, height = 0;
   std::uint32_t charts = 0;
   std::uint64_t image_bytes = 0;
@@ -39,29 +39,29 @@ struct PageReport {
 
 struct ExportReport {
   // Input
-  std::filesystem::path scene, target;
+  std::filesystem::path scene = {}, target = {};
   std::uint64_t triangles = 0, vertices = 0, materials = 0, textures = 0, objects = 0;
   bool lit = false;
   double metres_per_unit = 1;
-  Vec3d origin;
-  DefectReport defects;
-  ExportPlan plan;
+  Vec3d origin = {};
+  DefectReport defects = {};
+  ExportPlan plan = {};
   bool carried_out = false;  // if false, nothing below is known but the stages run so far
-  std::vector<StageReport> stages;
+  std::vector<StageReport> stages = {};
   double wall_seconds = 0, cpu_seconds = 0;
   std::int64_t peak_memory = 0;
 
   // Charts
-  std::vector<Chart> charts;
-  Distortion distortion;
+  std::vector<Chart> charts = {};
+  Distortion distortion = {};
   double seam_length = 0, surface_area = 0;  // scene units, scene units squared
-  ChartSet::Repairs repairs;
-  ChartSet::Timing chart_timing;
+  ChartSet::Repairs repairs = {};
+  ChartSet::Timing chart_timing = {};
 
   // Light
-  ToneMapping tone;
+  ToneMapping tone = {};
   double exposure_white = 0;  // scene luminance that becomes display white
-  LuminanceStatistics luminance;
+  LuminanceStatistics luminance = {};
   double light_seam_length = 0;  // of creases at which the light jumps, scene units
 
   // Textures
@@ -75,7 +75,7 @@ struct ExportReport {
   double downsizing_rms = 0, downsizing_max = 0;  // of display values, over sampled_texels
 
   // Pages
-  GroupingResult grouping;
+  GroupingResult grouping = {};
   double scale = 1;  // common to all textures
   // The texels of the charts' boxes, or with outlines the charts' uv area, divided by the pages'
   // texels.
@@ -87,9 +87,9 @@ struct ExportReport {
   std::uint64_t opened_charts = 0;  // charts whose parts were moved apart so as not to share texels
   // The length of the charts' borders and of the parts that still share texels, in texels. Present
   // with baked light, and with uvs for a lightmap.
-  std::optional<GapReport> gaps;
-  std::optional<std::uint64_t> texels_drawn_twice;  // as in UnwrappedMesh; without baked light
-  std::vector<PageReport> pages;
+  std::optional<GapReport> gaps = {};
+  std::optional<std::uint64_t> texels_drawn_twice = {};  // as in UnwrappedMesh; without baked light
+  std::vector<PageReport> pages = {};
   std::uint64_t gpu_bytes = 0;  // memory of the pages as RGBA8 with mip chains
 
   // The coarser mesh
@@ -98,10 +98,12 @@ struct ExportReport {
   double slip_texels = 0, turn_degrees = 0;
 
   bool error_measured = false;
-  Fidelity fidelity;
-  std::vector<std::pair<std::string, std::uint64_t>> files;  // files written: name, size in bytes
-  std::vector<std::string> not_kept;  // with keep_scene: what of the scene could not be written
-  std::vector<std::string> advice;    // what the figures mean for the user, and the remedy
+  Fidelity fidelity = {};
+  // Files written: name, size in bytes.
+  std::vector<std::pair<std::string, std::uint64_t>> files = {};
+  // With keep_scene: what of the scene could not be written.
+  std::vector<std::string> not_kept = {};
+  std::vector<std::string> advice = {};  // what the figures mean for the user, and the remedy
 };
 
 // Writes the report as JSON (docs/report.md explains every key). The file is written completely or

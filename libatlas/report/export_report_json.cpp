@@ -165,11 +165,15 @@ Json textures_json(const ExportReport& r) {
 Json grouping_json(const GroupingResult& g) {
   Json trace = Json::array();
   for (const GroupingStep& step : g.trace) trace.push_back({step.capacity, step.groups});
-  return {{"groups", g.group_count},          {"capacity", g.capacity},
-          {"largest_group", g.largest_group}, {"imbalance", g.imbalance},
-          {"lower_bound", g.lower_bound},     {"upper_bound", g.upper_bound},
-          {"fits_page", g.fits_page},         {"proved_smallest", g.proved_smallest},
-          {"group_sizes", g.group_size},      {"trace", trace}};
+  return {{"groups", g.group_count},
+          {"capacity", g.capacity},
+          {"largest_group", g.largest_group},
+          {"imbalance", g.imbalance},
+          {"lower_bound", g.lower_bound},
+          {"upper_bound", g.upper_bound},
+          {"group_sizes", g.group_size},
+          {"proved_smallest", g.proved_smallest},
+          {"trace", trace}};
 }
 
 Json pages_json(const ExportReport& r) {

@@ -10,7 +10,7 @@
 namespace atlas {
 
 struct Box3 {
-  Vec3d low, high;
+  Vec3d low = {}, high = {};
 };
 
 // A column-major 4x4 matrix, as OpenGL takes it.
@@ -33,7 +33,7 @@ struct LightFit {
   Matrix4 to_texture{};
   // Maps world positions to the clip space of the same map (xy and z in [-1, 1]).
   Matrix4 to_clip{};
-  Vec3d direction;         // towards the light, unit length
+  Vec3d direction = {};    // towards the light, unit length
   double texel = 0;        // world size of a texel
   double depth_range = 0;  // world distance between depth 0 and depth 1
 };
@@ -51,7 +51,7 @@ Result<LightFit> fit_light(const Vec3d& direction, const Box3& scene,
 
 // The map's axes in the world, as unit vectors. `direction` must not be zero.
 struct MapAxes {
-  Vec3d x, y;
+  Vec3d x = {}, y = {};
 };
 MapAxes map_axes(const Vec3d& direction, const Vec3d& up);
 

@@ -37,14 +37,14 @@ struct ScheduleOptions {
 // is complete after this part.
 struct MapWork {
   int slot = 0;
-  Vec3d direction;
+  Vec3d direction = {};
   double begin = 0, end = 1;
 };
 
 struct FramePlan {
-  std::vector<MapWork> work;  // to be done before the frame samples anything
-  int from = 0, to = 0;       // slots to sample; equal if one map is enough
-  Vec3d from_direction, to_direction;
+  std::vector<MapWork> work = {};  // to be done before the frame samples anything
+  int from = 0, to = 0;            // slots to sample; equal if one map is enough
+  Vec3d from_direction = {}, to_direction = {};
   double t = 0;            // position in time between the two keys, [0, 1); 0 for one map
   bool refreshed = false;  // maps were drawn at once: first frame, jump or invalidate()
 };
@@ -56,6 +56,7 @@ class KeySchedule {
   // 2 * max(interval_frames, max_frames). It is null for a light moved by hand.
   using Ahead = std::function<Vec3d(int frames)>;
 
+  // Numbers of frames below 1 count as 1, and a max_key_degrees out of range as the largest.
   explicit KeySchedule(const ScheduleOptions& options);
 
   // Plans the next frame, in which the light is at `now` (a direction towards the light, of any

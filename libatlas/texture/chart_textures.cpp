@@ -8,9 +8,9 @@
 #include <mutex>
 #include <utility>
 
+#include "libatlas/charts/chart_triangles.h"
 #include "libatlas/core/parallel.h"
 #include "libatlas/core/pool.h"
-#include "libatlas/texture/chart_triangles.h"
 #include "libatlas/texture/downsizing.h"
 #include "libatlas/texture/sample_chart.h"
 
@@ -227,15 +227,17 @@ TexelSize texel_size(Vec2d size, Vec2d texels_per_unit) {
   return {side(size.x * texels_per_unit.x), side(size.y * texels_per_unit.y)};
 }
 
-std::vector<double> wanted_densities(const ChartLight& light, const TextureOptions& options,
-                                     const Context& context) {
+Result<std::vector<double>> wanted_densities(const ChartLight& light, const TextureOptions& options,
+                                             const Context& context) {
   constexpr std::size_t kGrain = 16;
-  if (!check_scene_of(light).ok()) return {};
+  if (Status s = check(options); !s.ok()) return s;
+  if (Status s = check_scene_of(light); !s.ok()) return s;
   std::vector<double> densities(light.charts.charts.size());
   parallel_for(context, densities.size(), kGrain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t c = begin; c < end; ++c)
       densities[c] = wanted_density(light, options, light.charts.charts[c]);
   });
+  if (context.cancelled()) return Status::cancelled();
   return densities;
 }
 

@@ -47,9 +47,9 @@ enum class ChartContent : std::uint8_t { varied, uniform, unlit };
 // The texture of one chart. "Full" sizes are those that stage 2 asks for, and "final" sizes are
 // those after stage 3.
 struct ChartTexture {
-  Vec2d texels_per_unit;               // final density along the chart's u and v
+  Vec2d texels_per_unit = {};          // final density along the chart's u and v
   std::int32_t width = 0, height = 0;  // final inner box, texels
-  Vec2d full_texels_per_unit;
+  Vec2d full_texels_per_unit = {};
   std::int32_t full_width = 0, full_height = 0;
   std::int32_t halvings = 0;  // of varied charts; uniform ones shrink each side on its own
   ChartContent content = ChartContent::varied;
@@ -62,7 +62,7 @@ struct ChartTexture {
 };
 
 struct TextureResult {
-  std::vector<ChartTexture> charts;                // one a chart, in the same order
+  std::vector<ChartTexture> charts = {};           // one a chart, in the same order
   std::int64_t full_texels = 0, final_texels = 0;  // sums of width * height
   std::uint64_t halved = 0, uniform = 0, unlit = 0, capped = 0, raised = 0;  // counts of charts
   std::uint64_t sampled = 0;                                                 // charts
@@ -70,12 +70,11 @@ struct TextureResult {
   double rms_error = 0, max_error = 0;  // over sampled_texels; all other texels lose nothing
 };
 
-// Returns the texels per unit that stage 2 asks for, for each chart, before any limit of a page;
-// nothing if check_scene_of() finds an error.
+// Returns the texels per unit that stage 2 asks for, for each chart, before any limit of a page.
 // The density follows from the texel's length, and is raised if the chart's diffuse texture is
-// finer.
-std::vector<double> wanted_densities(const ChartLight& light, const TextureOptions& options,
-                                     const Context& context);
+// finer. Errors: bad_option, bad_input (see check_scene_of()), cancelled.
+Result<std::vector<double>> wanted_densities(const ChartLight& light, const TextureOptions& options,
+                                             const Context& context);
 
 // The inner box of a chart of `size` units at the given density. It has at least 1 x 1 texels.
 struct TexelSize {

@@ -24,7 +24,7 @@ struct LuminanceStatistics {
   double maximum = 0;                    // of max(R, G, B) over the samples
   double log_average = 0;  // exp(mean ln Y) over the lit surface, Y = luma (Rec. 709 weights)
   double mean = 0;         // of Y over the lit surface
-  Vec3f mean_rgb;          // over the lit surface
+  Vec3f mean_rgb = {};     // over the lit surface
   double minimum_log = 0, maximum_log = 0;     // ln Y at the 1st and 99th percentile
   std::uint64_t not_finite = 0, negative = 0;  // samples left out / counted as zero
 };

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "libatlas/core/glm_bridge.h"
 #include "libatlas/view/context.h"
@@ -72,6 +73,33 @@ GlTexture target_texture(GLenum format, int width, int height) {
   return t;
 }
 
+// Checks the strengths, which are numbers up to the largest float since shaders read them as such.
+Status check_strengths(const RenderOptions& o) {
+  struct Field {
+    const char* name;
+    double value;
+    bool may_be_zero;
+  };
+  for (const Field& f : {Field{"ambient", o.ambient, true},
+                         {"intensity", o.intensity, true},
+                         {"baked_strength", o.baked_strength, true},
+                         {"exposure", o.exposure, false},
+                         {"specular", o.specular, true},
+                         {"shininess", o.shininess, false},
+                         {"roughness", o.roughness, false},
+                         {"slope_bias", o.slope_bias, true},
+                         {"normal_offset", o.normal_offset, true},
+                         {"view_distance", o.view_distance, true}})
+    if (!(f.value >= 0) || f.value > std::numeric_limits<float>::max() ||
+        (f.value == 0 && !f.may_be_zero))
+      return {ErrorCode::bad_option, fmt::format("{} is {}: it is a number {}", f.name, f.value,
+                                                 f.may_be_zero ? "from 0 on" : "above 0")};
+  const double up = std::hypot(o.up.x, o.up.y, o.up.z);
+  if (!(up > 0) || !std::isfinite(up))
+    return {ErrorCode::bad_option, "up is a direction of finite length above 0"};
+  return {};
+}
+
 Status check_options(const RenderOptions& o) {
   if (o.width < 1 || o.height < 1 || o.width > 16384 || o.height > 16384)
     return {ErrorCode::bad_option,
@@ -86,7 +114,7 @@ Status check_options(const RenderOptions& o) {
             fmt::format("depths of {} bits: 16, 24 or 32 are possible", o.map_bits)};
   if (o.schedule.interval_frames < 1)
     return {ErrorCode::bad_option, "keys are at least one frame apart"};
-  return {};
+  return check_strengths(o);
 }
 
 bool same_schedule(const RenderOptions& a, const RenderOptions& b) {

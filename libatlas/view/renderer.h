@@ -33,7 +33,7 @@ inline constexpr ShadowMethod kAllMethods[] = {
 const char* name_of(ShadowMethod method);
 
 struct RenderOptions {
-  int width = 640, height = 400;
+  int width = 640, height = 400;  // 1..16384
   Shading shading = Shading::lambert;
   ShadowMethod shadows = ShadowMethod::march;
   bool show_visibility = false;  // grey values of the light's visibility, not colours
@@ -47,20 +47,21 @@ struct RenderOptions {
   // leans along each of the map's axes, which is exactly what a plane needs. The slope bias is
   // multiplied by the tangent of the angle to the light (up to 8); curved surfaces need it, since
   // their normals differ from their triangles'. A larger slope bias lets light through thin walls:
-  // a wall one texel thick leaks from 0.1 on.
+  // a wall one texel thick leaks from 0.1 on. Neither is negative.
   double slope_bias = 0.07, normal_offset = 1.0;
   bool fit_view = false;  // fits maps to the view instead of the whole scene
-  // fit_view: how far shadows reach; 0: a quarter of the scene's diagonal.
+  // fit_view: how far shadows reach, >= 0; 0: a quarter of the scene's diagonal.
   double view_distance = 0;
   bool snap = true;
-  ScheduleOptions schedule;  // interval and slicing; the method sets `blend`
+  ScheduleOptions schedule = {};  // interval and slicing; the method sets `blend`
 
-  double ambient = 0.25, intensity = 0.9;
-  double baked_strength = 1;  // factor on the light that is baked into the scene
-  double exposure = 1;
-  double specular = 0.3, shininess = 40, roughness = 0.2;  // Blinn-Phong's n, Ward's alpha
-  Vec3f background{0.55f, 0.65f, 0.8f};                    // as displayed
-  Vec3d up{0, 1, 0};
+  double ambient = 0.25, intensity = 0.9;  // >= 0
+  double baked_strength = 1;               // factor on the light baked into the scene, >= 0
+  double exposure = 1;                     // factor on all light, > 0
+  double specular = 0.3;                   // strength of the highlight, >= 0
+  double shininess = 40, roughness = 0.2;  // Blinn-Phong's n, Ward's alpha; > 0
+  Vec3f background{0.55f, 0.65f, 0.8f};    // as displayed
+  Vec3d up{0, 1, 0};                       // of any length above 0
 };
 
 // Returns how many samples the march takes along the ray in each key: one for each degree between
@@ -73,7 +74,7 @@ int march_samples(int least, double key_degrees);
 // KeySchedule).
 struct FrameLight {
   Vec3d direction{0.3, 1, 0.2};
-  KeySchedule::Ahead ahead;
+  KeySchedule::Ahead ahead = {};
 };
 
 struct FrameStats {

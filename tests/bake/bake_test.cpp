@@ -284,7 +284,10 @@ TEST(BakePage, RefusesPlacementsOfSeveralPagesAndChartsOfOtherScenes) {
   EXPECT_EQ(bake_page(mixed, placements, small_page(32), {}).status().code(), ErrorCode::bad_input);
   EXPECT_EQ(size_chart_textures(mixed, {}, {}).status().message(),
             "the charts are of a mesh of 16 triangles, and the scene has 8");
-  EXPECT_TRUE(wanted_densities(mixed, {}, {}).empty());
+  EXPECT_EQ(wanted_densities(mixed, {}, {}).status().code(), ErrorCode::bad_input);
+  const ChartLight own{sampler, other.charts, kPlain};
+  EXPECT_TRUE(wanted_densities(own, {}, {}).ok());
+  EXPECT_EQ(wanted_densities(own, {.texel = 0}, {}).status().code(), ErrorCode::bad_option);
 }
 
 // Charts show their light however little of a texel they cover. They were once black.

@@ -238,6 +238,21 @@ TEST(Tiles, TheWholeIsMeasuredAnew) {
 }
 
 // Triangles that are turned against their chart stay so in its pieces.
+TEST(Tiles, LimitsOutOfRangeChangeNothing) {
+  const Mesh mesh(grid(60, 6, 10, 1));
+  ChartSet set = charts_of(mesh);
+  const std::size_t count = set.charts.size();
+  const auto code = [&](const std::vector<double>& sides, double max_stretch) {
+    const auto cut = cut_to_limits(mesh.view(), {sides, max_stretch}, set, {});
+    return cut.ok() ? ErrorCode::ok : cut.status().code();
+  };
+  EXPECT_EQ(code({}, kMaxStretch), ErrorCode::bad_input);
+  EXPECT_EQ(code(std::vector<double>(count, 0), kMaxStretch), ErrorCode::bad_input);
+  for (const double stretch : {1.0, 0.0, std::numeric_limits<double>::quiet_NaN()})
+    EXPECT_EQ(code(std::vector<double>(count, 2.6), stretch), ErrorCode::bad_option) << stretch;
+  EXPECT_EQ(set.charts.size(), count);
+}
+
 TEST(Tiles, MayHaveTurnedTriangles) {
   Mesh mesh(grid(60, 6, 10, 1));
   for (std::size_t i = 0; i < mesh.indices.size(); i += 9)

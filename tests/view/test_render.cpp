@@ -232,7 +232,7 @@ TEST(Render, WrongOptionsAreSaidAndChangeNothing) {
   const View view = courtyard_view();
   RenderOptions o = small();
   Renderer r = must_render(view.scene, o);
-  for (int i = 0; i < 7; ++i) {
+  for (int i = 0; i < 12; ++i) {
     RenderOptions bad = o;
     if (i == 0) bad.pcf = 2;
     if (i == 1) bad.width = 0;
@@ -241,6 +241,11 @@ TEST(Render, WrongOptionsAreSaidAndChangeNothing) {
     if (i == 4) bad.march_steps = 0;
     if (i == 6) bad.map_bits = 8;
     if (i == 5) bad.schedule.interval_frames = 0;
+    if (i == 7) bad.roughness = 0;
+    if (i == 8) bad.ambient = -1;
+    if (i == 9) bad.exposure = std::nan("");
+    if (i == 10) bad.shininess = 1e300;
+    if (i == 11) bad.up = {0, 0, 0};
     const Status s = r.set_options(bad);
     EXPECT_EQ(s.code(), ErrorCode::bad_option) << i;
     EXPECT_EQ(s.message().find('\n'), std::string::npos);

@@ -111,7 +111,7 @@ TEST(ExportOptions, OfTexturesAndTheMesh) {
   EXPECT_EQ(p.simplify_slip, 0.5);
   EXPECT_TRUE(p.exr);
   EXPECT_EQ(p.png_compression, 8);
-  const ExportOptions plain = parsed({"--simplify"}).options;
+  const ExportOptions plain = parsed({}).options;
   EXPECT_TRUE(plain.follow_textures && plain.outlines && plain.simplify && plain.measure_error);
   EXPECT_FALSE(plain.exr || plain.square_plain_page || plain.charts_only || plain.keep_scene);
 }

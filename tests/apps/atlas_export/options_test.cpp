@@ -113,7 +113,7 @@ TEST_F(ExportFlags, ThePlanShowsThem) {
         {"--mips 3", "4 shifted grids, gutters for mip levels 0 to 3"},
         {"--slip 0.7", "slip at most 0.7 texels"},
         {"--no-simplify", "skip simplify     switched off"},
-        {"--simplify", "run  simplify"},
+        {"--slip 0.3", "run  simplify"},
         {"--no-error", "skip error        switched off"},
         {"--cone 60", "normals within 60° of a chart's axis"},
         {"--max-stretch 1.1", "stretch at most 1.1 over"},
