@@ -35,14 +35,13 @@ struct BakeOptions {
 };
 
 struct BakedPage {
-  Image8 display;  // RGB, tone-mapped, sRGB-encoded; row 0 at the bottom
-  ImageF linear;   // RGB, scene-linear luminance; empty unless BakeOptions::linear is set
+  Image8 display = {};  // RGB, tone-mapped, sRGB-encoded; row 0 at the bottom
+  ImageF linear = {};   // RGB, scene-linear luminance; empty unless BakeOptions::linear is set
   std::uint64_t triangles = 0;  // how many were baked
   // Texels that samples determine. With least_squares these are the texels that some sample's
   // bilinear look-up reads, which reach up to a texel beyond the triangles. With average they are
   // the texels that a triangle touches.
   std::uint64_t covered_texels = 0;
-  std::uint64_t filled_texels = 0;  // the other texels of boxes and pads, filled from those
   // Texels that several charts claim. There are none on pages that were packed for as many mip
   // levels.
   std::uint64_t contested_texels = 0;

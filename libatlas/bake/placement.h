@@ -18,8 +18,8 @@ struct ChartPlacement {
   std::int32_t page = -1;
   std::int32_t x = 0, y = 0;           // bottom-left corner of the inner box, page texels
   std::int32_t width = 0, height = 0;  // of the inner box as it lies on the page
-  Vec2d texels_per_unit;               // along the chart's u and v
-  Vec2d offset;                        // position of uv (0, 0), page texels
+  Vec2d texels_per_unit = {};          // along the chart's u and v
+  Vec2d offset = {};                   // position of uv (0, 0), page texels
   double cosine = 1, sine = 0;         // of the angle of the turn, counter-clockwise
   // Whether the chart was packed by its outline. The boxes of such charts may overlap: of its box,
   // a chart owns only the cells of 2^mip_levels texels a side that come within `pad` texels of one

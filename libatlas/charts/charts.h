@@ -62,30 +62,30 @@ struct Chart {
   std::uint32_t first_triangle = 0, triangle_count = 0;  // range of ChartSet::chart_triangles
   std::uint32_t first_uv = 0, uv_count = 0;              // range of ChartSet::uvs
   std::uint32_t material = 0;      // of its triangles (of the first, if split_at_materials is off)
-  Vec2d size;                      // width >= height of the box of its uvs, whose corner is (0, 0)
-  Vec3f axis;                      // the direction of its normal cone
+  Vec2d size = {};                 // width >= height of the box of its uvs, whose corner is (0, 0)
+  Vec3f axis = {};                 // the direction of its normal cone
   double cone_degrees = 0;         // largest angle between axis and a triangle's normal
   bool planar_projection = false;  // the cheap parameterisation was enough
   bool kept = false;               // the given uvs' shape; max_stretch was not asked of it
-  Distortion distortion;
+  Distortion distortion = {};
 };
 
 // Every triangle of the input is in exactly one chart. Uvs are in scene units: lengths on the
 // surface times the relative linear density. Every chart's map is injective, positively
 // oriented, starts at (0, 0), and lies with its long side along u.
 struct ChartSet {
-  std::vector<Chart> charts;
-  std::vector<std::uint32_t> triangle_chart;   // 1 a triangle
-  std::vector<std::uint32_t> chart_triangles;  // triangles sorted by chart, then by id
-  std::vector<Vec2d> uvs;                      // sorted by chart
+  std::vector<Chart> charts = {};
+  std::vector<std::uint32_t> triangle_chart = {};   // 1 a triangle
+  std::vector<std::uint32_t> chart_triangles = {};  // triangles sorted by chart, then by id
+  std::vector<Vec2d> uvs = {};                      // sorted by chart
   // 1 a uv: a vertex at its position (or 10^-12 off). Of several vertices at one place, which may
   // differ in normals and the like, this is any: take attributes by the corner's own index.
-  std::vector<std::uint32_t> uv_vertex;
-  std::vector<std::uint32_t> triangle_uv;  // 3 a triangle, into uvs, in the corner order of indices
-                                           // (a triangle whose orientation disagrees with its
-                                           // chart's is listed in flipped_triangles)
-  std::vector<std::uint32_t> flipped_triangles;  // input orientation opposite to the chart's
-  Distortion distortion;                         // of the whole
+  std::vector<std::uint32_t> uv_vertex = {};
+  std::vector<std::uint32_t> triangle_uv = {};  // 3 a triangle, into uvs, in the corner order of
+                                                // indices (a triangle whose orientation disagrees
+                                                // with its chart's is listed in flipped_triangles)
+  std::vector<std::uint32_t> flipped_triangles = {};  // input orientation opposite to the chart's
+  Distortion distortion = {};                         // of the whole
   double seam_length = 0;           // of interior edges that are chart borders, scene units
   double surface_area = 0;          // scene units squared
   std::uint64_t copied_pieces = 0;  // pieces of the mesh that took the charts of a congruent one
@@ -95,7 +95,7 @@ struct ChartSet {
     // Only with keep_uv_charts; both count given charts, not those they became. A piece of the mesh
     // without usable texcoords is reflattened.
     std::uint64_t kept_charts = 0, reflattened_charts = 0;
-  } repairs;
+  } repairs = {};
   struct Timing {  // CPU seconds, all threads
     double segmentation_cpu = 0, parameterization_cpu = 0;
     // Of segmentation: welding, links and pieces; normals without scan noise; micro-cells; their
@@ -107,7 +107,7 @@ struct ChartSet {
     // leave out charts of less than 256 triangles, which are over before a clock is read.
     double cuts_cpu = 0, solve_cpu = 0, flips_cpu = 0, overlaps_cpu = 0, absorb_cpu = 0,
            limbs_cpu = 0;
-  } timing;
+  } timing = {};
 };
 
 // Cuts the mesh into charts and flattens them. Geometry is scale- and translation-free; the result

@@ -17,11 +17,11 @@ namespace atlas {
 std::vector<std::uint32_t> usable_texcoords(const MeshView& mesh);
 
 struct GivenUvsResult {
-  std::vector<FlatChart> charts;   // ordered by first triangle
-  std::uint64_t kept_charts = 0;   // given charts whose uvs were kept
-  std::uint64_t reflattened = 0;   // the other given charts
-  std::uint64_t split_charts = 0;  // reflattened charts that were divided
-  ChartSet::Timing timing;         // of segmentation, and the parts of everything
+  std::vector<FlatChart> charts = {};  // ordered by first triangle
+  std::uint64_t kept_charts = 0;       // given charts whose uvs were kept
+  std::uint64_t reflattened = 0;       // the other given charts
+  std::uint64_t split_charts = 0;      // reflattened charts that were divided
+  ChartSet::Timing timing = {};        // of segmentation, and the parts of everything
 };
 
 // Keeps or flattens the given charts, which are the components of `input.topology`: it must have

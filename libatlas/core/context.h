@@ -23,10 +23,10 @@ struct Context {
   // Called as (stage, fraction in [0, 1]), from any thread, but never from two threads at once by
   // the same library call. The fractions of a stage rise, stages follow each other, and some stages
   // report rarely.
-  std::function<void(std::string_view stage, double fraction)> progress;
+  std::function<void(std::string_view stage, double fraction)> progress = {};
   // Called with one line of text about something that was skipped or repaired or is worth knowing,
   // from any thread as `progress` is.
-  std::function<void(std::string_view line)> warn;
+  std::function<void(std::string_view line)> warn = {};
   // The caller (or its signal handler) sets it to end the work; every long loop polls it. The stage
   // then returns Status::cancelled() and leaves nothing half-written.
   const std::atomic<bool>* cancel = nullptr;

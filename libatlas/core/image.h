@@ -11,7 +11,7 @@ namespace atlas {
 template <class T>
 struct Image {
   int width = 0, height = 0, channels = 0;
-  std::vector<T> texels;  // width * height * channels
+  std::vector<T> texels = {};  // width * height * channels
 
   Image() = default;
   Image(int w, int h, int c, T fill = T{})

@@ -15,9 +15,9 @@ struct ChartOutline {
   struct Edge {
     Vec2d from, to;
   };
-  std::vector<Edge> edges;  // loop after loop, with the chart to their left
+  std::vector<Edge> edges = {};  // loop after loop, with the chart to their left
   // Degenerate triangles and those of the opposite orientation.
-  std::vector<std::array<Vec2d, 3>> loose;
+  std::vector<std::array<Vec2d, 3>> loose = {};
   double area = 0;  // the area that it covers (covered_area.h)
 
   bool empty() const { return edges.empty() && loose.empty(); }

@@ -14,8 +14,8 @@ Result<FitResult> fit_boxes(std::span<const FitItem> items, const FitOptions& op
 
 // Charts given by their outlines, which have an item each.
 struct FitCharts {
-  std::span<const FitItem> items;
-  std::span<const ChartOutline> outlines;
+  std::span<const FitItem> items = {};
+  std::span<const ChartOutline> outlines = {};
 };
 
 // Does fit_pages for charts given by their outlines. The arguments must have been checked. The

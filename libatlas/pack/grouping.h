@@ -30,9 +30,9 @@ struct GroupingStep {
 };
 
 struct GroupingResult {
-  std::vector<std::uint32_t> group;       // one per item, in input order; < group_count
-  std::uint32_t group_count = 0;          // at most N; 0 only if there are no items
-  std::vector<std::uint64_t> group_size;  // total size of each group
+  std::vector<std::uint32_t> group = {};       // one per item, in input order; < group_count
+  std::uint32_t group_count = 0;               // at most N; 0 only if there are no items
+  std::vector<std::uint64_t> group_size = {};  // total size of each group
   // A: the smallest capacity that was seen to have F(A) <= N and A >= the largest item.
   std::uint64_t capacity = 0;
   std::uint64_t largest_group = 0;  // at most capacity
@@ -42,8 +42,8 @@ struct GroupingResult {
   std::uint64_t upper_bound = 0;
   // No capacity below A has F <= N (the refinement reached the end).
   bool proved_smallest = false;
-  bool fits_page = false;           // page_capacity was given and was large enough
-  std::vector<GroupingStep> trace;  // every (A, F(A)), in the order of evaluation
+  bool fits_page = false;                // page_capacity was given and was large enough
+  std::vector<GroupingStep> trace = {};  // every (A, F(A)), in the order of evaluation
 };
 
 // F(A) of the paper. The items are sorted in descending order (ties by index), and each is put into

@@ -48,19 +48,19 @@ struct OutlineOptions {
 struct OutlinePlacement {
   std::uint32_t page = kNoPage;
   double angle = 0;  // in radians, counterclockwise
-  Vec2d offset;
+  Vec2d offset = {};
   // The box of the owned cells in texels, padding included; boxes of two charts may overlap.
-  Rect box;
+  Rect box = {};
 };
 
 struct OutlineResult {
-  std::vector<OutlinePlacement> placements;  // one per shape
-  std::vector<Extent> pages;            // in texels; the height of an open page is the used height
-  std::vector<std::uint32_t> unplaced;  // shapes that found no room, ascending
-  double shape_area = 0;                // area of the placed shapes, in square texels of the page
-  double utilization = 0;               // shape_area / area of the pages
+  std::vector<OutlinePlacement> placements = {};  // one per shape
+  std::vector<Extent> pages = {};  // in texels; the height of an open page is the used height
+  std::vector<std::uint32_t> unplaced = {};  // shapes that found no room, ascending
+  double shape_area = 0;   // area of the placed shapes, in square texels of the page
+  double utilization = 0;  // shape_area / area of the pages
   std::uint64_t layouts_tried = 0;
-  std::vector<PackProgress> curve;
+  std::vector<PackProgress> curve = {};
 };
 
 // Places the shapes such that no two padded shapes share a cell. A cell belongs to a padded chart

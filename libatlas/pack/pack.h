@@ -97,15 +97,15 @@ struct PackProgress {
 };
 
 struct PackResult {
-  std::vector<Placement> placements;   // one per item, in input order
-  std::vector<Extent> pages;           // the size of every page used
-  std::vector<UnplacedItem> unplaced;  // every item that was not placed, ascending by item
-  std::int64_t placed_area = 0;        // area of the placed items without padding, in square texels
-  double utilization = 0;              // placed_area / total area of the pages
+  std::vector<Placement> placements = {};   // one per item, in input order
+  std::vector<Extent> pages = {};           // the size of every page used
+  std::vector<UnplacedItem> unplaced = {};  // every item that was not placed, ascending by item
+  std::int64_t placed_area = 0;  // area of the placed items without padding, in square texels
+  double utilization = 0;        // placed_area / total area of the pages
   double fill_without_last = 0;  // the same without the last page; 1 if there is only one page
   std::uint32_t page_lower_bound = 0;  // no packing needs fewer pages than this
   std::uint64_t layouts_tried = 0;
-  std::vector<PackProgress> curve;  // the improvements, in the order in which they were found
+  std::vector<PackProgress> curve = {};  // the improvements, in the order in which they were found
 };
 
 // Packs the items into pages. The placements are in input order, and ties are broken by index. An

@@ -42,8 +42,8 @@ class PositionView {
 // do not depend on the unit of length. Subtract a common origin first, so that no digits are lost
 // to a large offset.
 struct LocalMesh {
-  PositionView positions;
-  std::span<const std::array<std::uint32_t, 3>> triangles;
+  PositionView positions = {};
+  std::span<const std::array<std::uint32_t, 3>> triangles = {};
   // Desired linear density of each triangle (uv length per surface length, > 0), one per triangle;
   // empty: 1 everywhere. Distortion is measured relative to the surface scaled by it.
   std::span<const double> density = {};

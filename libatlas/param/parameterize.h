@@ -62,19 +62,19 @@ struct ParamOptions {
 
 struct ParamResult {
   // One per vertex. The uv area is the surface area (times density squared), and positive.
-  std::vector<Vec2d> uvs;
-  Distortion distortion;
+  std::vector<Vec2d> uvs = {};
+  Distortion distortion = {};
   bool planar = false;        // the projection was good enough
   bool injective = false;     // certain, by exact predicates (injectivity.h)
   bool within_bound = false;  // stretch_999 and stretch_l2 <= max_stretch
   // Empty if both hold. Otherwise the triangles that prevent it, worst first: flipped ones, those
   // at border crossings, those beyond the bound. It helps to cut the chart near or between them.
-  std::vector<std::uint32_t> offenders;
+  std::vector<std::uint32_t> offenders = {};
   // Pairs of border edges that overlap. It helps to cut between the two edges of a pair.
-  std::vector<BorderCrossing> crossings;
+  std::vector<BorderCrossing> crossings = {};
   // The crossings that remained when moving the borders apart had come furthest (edges of the same
   // border, perhaps other pairs). Empty if that was not tried; it is only tried within the bound.
-  std::vector<BorderCrossing> stubborn_crossings;
+  std::vector<BorderCrossing> stubborn_crossings = {};
   int unflipped = 0;  // flipped triangles that the barrier step corrected
 };
 

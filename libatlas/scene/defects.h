@@ -51,11 +51,11 @@ std::string_view name_of(DefectKind kind);
 struct Defect {
   DefectKind kind{};
   std::uint64_t count = 0;
-  std::vector<std::string> first_places;  // "file:line" or "file: face 12", at most 5
+  std::vector<std::string> first_places = {};  // "file:line" or "file: face 12", at most 5
 };
 
 struct DefectReport {
-  std::vector<Defect> defects;           // one per kind met, in the order of DefectKind
+  std::vector<Defect> defects = {};      // one per kind met, in the order of DefectKind
   std::uint64_t triangles_left_out = 0;  // elements that would have been triangles or polygons
 
   static constexpr std::size_t kMaxPlaces = 5;

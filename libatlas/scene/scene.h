@@ -31,7 +31,7 @@ enum class TextureWrap : std::uint8_t { repeat, mirror, clamp };
 // Lambertian reflectance: the diffuse colour times the texture, if there is one. The colour is
 // linear RGB, 0..1; values outside are used as they are.
 struct Material {
-  std::string name;
+  std::string name = {};
   Vec3f diffuse{1, 1, 1};
   std::int32_t texture = -1;  // index into Scene::textures, or -1
   TextureWrap wrap_u = TextureWrap::repeat, wrap_v = TextureWrap::repeat;
@@ -54,8 +54,8 @@ struct Material {
 
 // A diffuse texture. Values are 8-bit sRGB-encoded, origin bottom left.
 struct Texture {
-  std::filesystem::path path;  // where it was read from, for messages
-  Image8 image;                // at least 1 channel; grey is channel 0, colour channels 0..2
+  std::filesystem::path path = {};  // where it was read from, for messages
+  Image8 image = {};                // at least 1 channel; grey is channel 0, colour channels 0..2
   // A whole PNG or JPEG file in place of `image`, which is then empty: for exports that keep the
   // scene's textures without decoding them (ReadOptions::encoded_textures).
   std::vector<std::uint8_t> encoded = {};
@@ -73,29 +73,29 @@ inline constexpr float kMostLight = 1e36f;
 // program that fills the arrays by itself needs positions, indices and usually illumination;
 // complete_scene() (check_scene.h) adds the rest.
 struct Scene {
-  Vec3d origin;                        // added to a position, gives the coordinates of the file
-  double metres_per_unit = 1;          // length of one scene unit
-  std::vector<Vec3f> positions;        // finite, relative to origin
-  std::vector<Vec3f> illumination;     // linear RGB per vertex, up to kMostLight; may be empty
-  std::vector<Vec2f> texcoords;        // finite; may lie outside [0, 1]
-  std::vector<std::uint32_t> indices;  // 3 per triangle, into positions
+  Vec3d origin = {};                     // added to a position, gives the coordinates of the file
+  double metres_per_unit = 1;            // length of one scene unit
+  std::vector<Vec3f> positions = {};     // finite, relative to origin
+  std::vector<Vec3f> illumination = {};  // linear RGB per vertex, up to kMostLight; may be empty
+  std::vector<Vec2f> texcoords = {};     // finite; may lie outside [0, 1]
+  std::vector<std::uint32_t> indices = {};  // 3 per triangle, into positions
   // 3 per triangle, into texcoords, or kNoTexcoord if the file gives none there; empty if no
   // triangle has any
-  std::vector<std::uint32_t> texcoord_indices;
-  std::vector<Vec3f> normals;  // unit length within 1 %; empty if none is given or asked for
+  std::vector<std::uint32_t> texcoord_indices = {};
+  std::vector<Vec3f> normals = {};  // unit length within 1 %; empty if none is given or asked for
   // 3 per triangle, into normals, or kNoNormal if none is given there; empty if no triangle has any
-  std::vector<std::uint32_t> normal_indices;
-  std::vector<std::uint32_t> triangle_material;  // 1 per triangle, into materials
-  std::vector<std::uint32_t> triangle_object;    // 1 per triangle, into object_names, or empty
-  std::vector<Material> materials;               // at least one when there are triangles
-  std::vector<Texture> textures;
-  std::vector<std::string> object_names;
+  std::vector<std::uint32_t> normal_indices = {};
+  std::vector<std::uint32_t> triangle_material = {};  // 1 per triangle, into materials
+  std::vector<std::uint32_t> triangle_object = {};    // 1 per triangle, into object_names, or empty
+  std::vector<Material> materials = {};               // at least one when there are triangles
+  std::vector<Texture> textures = {};
+  std::vector<std::string> object_names = {};
   // The glTF file itself, if asked for (ReadOptions::rest). An export to glTF that keeps the scene
   // writes it again, so triangles, positions and origin must still be those that were read: others
   // are refused. Changes to the other arrays are not written, except to light that came from
   // another file. A program that changes the scene sets `source` to null. The export then writes
   // the arrays, and lists `not_read` as not kept.
-  std::shared_ptr<const GltfSource> source;
+  std::shared_ptr<const GltfSource> source = {};
   // Counts what the file has but the other members, except `source`, do not hold. An export that
   // keeps the scene without `source` lists it as not kept.
   LossCounts not_read = {};

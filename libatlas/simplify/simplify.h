@@ -32,11 +32,12 @@ struct SimplifyOptions {
 // The result: triangles over the *input's* positions and uvs. Vertices are only removed and never
 // moved, so both sides of a seam stay bitwise equal.
 struct SimplifiedMesh {
-  std::vector<std::uint32_t> indices;          // 3 a triangle, into MeshView::positions
-  std::vector<std::uint32_t> uv_indices;       // 3 a triangle, into ChartSet::uvs
-  std::vector<std::uint32_t> triangle_chart;   // 1 a triangle, ascending
-  std::vector<std::uint32_t> source_triangle;  // 1 a triangle: an input triangle of the same chart,
-                                               // within it or beside it (gives the material)
+  std::vector<std::uint32_t> indices = {};         // 3 a triangle, into MeshView::positions
+  std::vector<std::uint32_t> uv_indices = {};      // 3 a triangle, into ChartSet::uvs
+  std::vector<std::uint32_t> triangle_chart = {};  // 1 a triangle, ascending
+  // 1 a triangle: an input triangle of the same chart,.
+  std::vector<std::uint32_t> source_triangle = {};
+  // within it or beside it (gives the material)
   std::uint64_t triangles_in = 0, triangles_out = 0;
   double max_slip_texels = 0;   // an upper bound of the slip anywhere, <= the option
   double max_turn_degrees = 0;  // an upper bound of the turn anywhere, <= the option
@@ -49,9 +50,9 @@ struct SimplifiedMesh {
 
 // What is simplified. The data must exist until the call returns.
 struct SimplifyInput {
-  MeshView mesh;
+  MeshView mesh = {};
   const ChartSet& charts;
-  std::span<const double> texels_per_unit;  // 1 a chart: texels a unit of ChartSet::uvs, > 0
+  std::span<const double> texels_per_unit = {};  // 1 a chart: texels a unit of ChartSet::uvs, > 0
 };
 
 // Removes vertices by half-edge collapses (OpenMesh) within the bounds above. If the same charts

@@ -16,8 +16,8 @@ namespace atlas {
 
 struct BenchOptions {
   // Size, filter, interval and all other settings; shading and method are varied.
-  RenderOptions render;
-  Camera camera;
+  RenderOptions render = {};
+  Camera camera = {};
   double degrees_per_frame = 0.5;  // the light's speed along the path
   std::vector<Shading> shadings{Shading::lambert, Shading::blinn_phong, Shading::ward};
   std::vector<ShadowMethod> methods{std::begin(kAllMethods), std::end(kAllMethods)};
@@ -46,8 +46,8 @@ Spread spread_of(std::vector<double> values);
 struct BenchRun {
   Shading shading{};
   ShadowMethod method{};
-  std::vector<FrameTime> frames;
-  Spread wall, cpu, gpu;                 // seconds per frame; gpu: 0 if nothing was measured
+  std::vector<FrameTime> frames = {};
+  Spread wall = {}, cpu = {}, gpu = {};  // seconds per frame; gpu: 0 if nothing was measured
   double shadow_share = 0;               // of the GPU time
   double work_mean = 0, work_worst = 0;  // triangles submitted per frame, both passes
 };
@@ -57,18 +57,18 @@ struct BenchRun {
 struct BenchControl {
   // Their number is set so that they last about as long as a frame in the warm-up.
   std::uint64_t rounds = 0;
-  Spread wall, cpu;  // seconds
+  Spread wall = {}, cpu = {};  // seconds
 };
 
 struct BenchTimes {
-  std::vector<BenchRun> runs;
-  BenchControl control;
+  std::vector<BenchRun> runs = {};
+  BenchControl control = {};
 };
 
 struct BenchError {
   ShadowMethod method{};
   int interval = 0;  // k
-  VisibilityError visibility;
+  VisibilityError visibility = {};
   // Of the shaded pictures; psnr from the mean squared error of all of them.
   double psnr = 0, ssim = 0;
   // Seconds per frame while measuring visibility (same shader output); gpu: 0 if not measured.
@@ -76,12 +76,12 @@ struct BenchError {
 };
 
 struct BenchResult {
-  std::string device, version;
+  std::string device = {}, version = {};
   bool software = false;
   int width = 0, height = 0, map_resolution = 0, interval = 0, pcf = 0;
   std::uint32_t triangles = 0;
-  BenchTimes times;
-  std::vector<BenchError> errors;
+  BenchTimes times = {};
+  std::vector<BenchError> errors = {};
 };
 
 // Runs every shading with every method. The combinations take turns frame by frame, so that a busy

@@ -50,7 +50,6 @@ bool draws_in_software() {
 }
 
 Status GlContext::initialise(bool debug) {
-  info_.vendor = text_of(GL_VENDOR);
   info_.renderer = text_of(GL_RENDERER);
   info_.version = text_of(GL_VERSION);
   if (epoxy_gl_version() < 45)
@@ -59,7 +58,6 @@ Status GlContext::initialise(bool debug) {
                         "LIBGL_ALWAYS_SOFTWARE=1 to use Mesa's software renderer)",
                         info_.renderer, info_.version)};
   info_.software = draws_in_software();
-  glGetIntegerv(GL_MAX_TEXTURE_SIZE, &info_.max_texture);
   if (debug) {
     glEnable(GL_DEBUG_OUTPUT);
     glEnable(GL_DEBUG_OUTPUT_SYNCHRONOUS);

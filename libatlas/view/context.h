@@ -17,9 +17,8 @@ struct GLFWwindow;
 namespace atlas {
 
 struct GlInfo {
-  std::string vendor, renderer, version;
+  std::string renderer = {}, version = {};
   bool software = false;  // the renderer is Mesa's llvmpipe, softpipe or swrast
-  int max_texture = 0;    // texels
 };
 
 // Returns whether the current context draws on the CPU, as GlInfo::software says.

@@ -28,17 +28,17 @@ Result<ViewScene> load_view(const std::filesystem::path& path, bool baked_textur
                             const Context& context);
 
 struct PlayOptions {
-  LightPath light;
-  Camera camera;                   // the camera at the start
-  double degrees_per_frame = 0.5;  // headless
-  double degrees_per_second = 15;  // in a window
-  double max_step = 2;             // in a window: most degrees per frame, see LightClock
-  int frames = 1;                  // headless: how many are drawn
-  int close_after = 0;             // in a window: frames until it closes by itself; 0: never
-  std::filesystem::path record;    // a folder for frame00000.png and so on; empty: none
+  LightPath light = {};
+  Camera camera = {};                 // the camera at the start
+  double degrees_per_frame = 0.5;     // headless
+  double degrees_per_second = 15;     // in a window
+  double max_step = 2;                // in a window: most degrees per frame, see LightClock
+  int frames = 1;                     // headless: how many are drawn
+  int close_after = 0;                // in a window: frames until it closes by itself; 0: never
+  std::filesystem::path record = {};  // a folder for frame00000.png and so on; empty: none
   // PNG file; empty: none. Headless, it gets the last frame; in a window, what F12 takes, and what
   // was last shown before close_after.
-  std::filesystem::path screenshot;
+  std::filesystem::path screenshot = {};
 };
 
 struct PlaySummary {

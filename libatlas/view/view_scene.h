@@ -17,12 +17,12 @@ namespace atlas {
 
 struct ViewScene {
   // Per vertex; an array is empty where the scene has no such thing.
-  std::vector<Vec3f> positions, normals;
-  std::vector<Vec3f> colours;   // diffuse reflectance of the material, linear
-  std::vector<Vec3f> emission;  // of the material, unless a texture shapes it; 1 is white
-  std::vector<Vec2f> texcoords;
-  std::vector<Vec3f> illumination;  // linear, as given
-  std::vector<std::uint32_t> indices;
+  std::vector<Vec3f> positions = {}, normals = {};
+  std::vector<Vec3f> colours = {};   // diffuse reflectance of the material, linear
+  std::vector<Vec3f> emission = {};  // of the material, unless a texture shapes it; 1 is white
+  std::vector<Vec2f> texcoords = {};
+  std::vector<Vec3f> illumination = {};  // linear, as given
+  std::vector<std::uint32_t> indices = {};
 
   // A texture (-1: none), how it continues beyond its edges, and whether triangles are left out
   // where their back is seen.
@@ -41,16 +41,16 @@ struct ViewScene {
     Vec3f centre;  // of a sphere that contains them
     float radius = 0;
   };
-  std::vector<Cluster> clusters;  // grouped by look
+  std::vector<Cluster> clusters = {};  // grouped by look
 
   // What casts shadows: the same triangles over welded positions.
-  std::vector<Vec3f> caster_positions;
-  std::vector<std::uint32_t> caster_indices;
+  std::vector<Vec3f> caster_positions = {};
+  std::vector<std::uint32_t> caster_indices = {};
 
-  std::vector<Texture> textures;
+  std::vector<Texture> textures = {};
   bool textures_hold_light = false;  // whether they are atlases with baked light
-  Box3 bounds;                       // of the positions that triangles use
-  Vec3d origin;                      // added to a position, gives the coordinates of the file
+  Box3 bounds = {};                  // of the positions that triangles use
+  Vec3d origin = {};                 // added to a position, gives the coordinates of the file
   double metres_per_unit = 1;        // > 0; used for the height of a visitor's eye
   double light_scale = 1;            // exposure that puts the 99th percentile of the light at 1
 

@@ -12,7 +12,7 @@
 #include <utility>
 #include <vector>
 
-#include "libatlas/pipeline/thin_uvs.h"
+#include "libatlas/uvs/thin_uvs.h"
 #include "tests/support/atlas_measure.h"
 
 namespace atlas::test {

@@ -19,8 +19,8 @@ struct SeamBand {
 };
 
 struct StraightenOptions {
-  BorderRules rules;
-  std::span<const SeamBand> bands;  // one per chart
+  BorderRules rules = {};
+  std::span<const SeamBand> bands = {};  // one per chart
   // All triangles of the charts with rings; empty: those of all charts.
   std::span<const std::uint32_t> triangles{};
 };
