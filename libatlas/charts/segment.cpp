@@ -5,8 +5,9 @@
 #include <span>
 
 #include "libatlas/charts/cells/cells.h"
-#include "libatlas/charts/merging/coarse.h"
-#include "libatlas/charts/merging/merge.h"
+#include "libatlas/charts/cells/faces.h"
+#include "libatlas/charts/cells/rows.h"
+#include "libatlas/charts/piece_cuts.h"
 #include "libatlas/charts/seams/refine.h"
 #include "libatlas/charts/seams/slit_paths.h"
 #include "libatlas/charts/seams/straighten.h"
@@ -15,19 +16,6 @@
 
 namespace atlas {
 namespace {
-
-// A mesh whose cells are merged into charts.
-struct Cut {
-  const Topology& topology;
-  Cells cells;
-  CoarseMesh coarse;
-  MergeResult merged;
-  std::vector<std::uint8_t> left_out;  // one per piece
-
-  bool takes(std::uint32_t t) const {
-    return cells.of_triangle[t] != kNoIndex && !left_out[topology.component[t]];
-  }
-};
 
 // Gives triangles their labels (beginning with `first_label`) and frames, and marks the seams of
 // charts with themselves.
@@ -54,15 +42,6 @@ void spread_to_triangles(const Cut& cut, std::uint32_t first_label, Segmentation
   }
 }
 
-// Returns the component that each cell lies in.
-std::vector<std::uint32_t> pieces_of(const Topology& topology, const Cells& cells) {
-  std::vector<std::uint32_t> piece(cells.count, kNoIndex);
-  for (std::uint32_t t = 0; t < cells.of_triangle.size(); ++t) {
-    if (cells.of_triangle[t] != kNoIndex) piece[cells.of_triangle[t]] = topology.component[t];
-  }
-  return piece;
-}
-
 // The widest band, in rings, within which seams are straightened. The band is as wide as cells are
 // uneven, a third of a cell's width to each side, but wider ones take too long on fine meshes.
 constexpr double kMostRings = 12;
@@ -84,6 +63,12 @@ constexpr std::uint32_t kFastTrianglesPerCell = 250, kFastCellsOfSmallMesh = 60;
 constexpr double kSomeFaces = 0.1, kAllFaces = 0.93;
 constexpr std::size_t kFewCharts = 3;
 
+// Where the fans of a piece's cells err by more than kFanError of their area, its cells are grown
+// again within rows of needles, if it has these, and are kept if their fans err by less than
+// kBetterFans of that. Cells of most pieces err by 0.04 to 0.08. Six robots' parts with rows came
+// out in 42 charts instead of 120, and 447 parts with some needles in 0.4 % fewer.
+constexpr double kFanError = 0.06, kBetterFans = 0.5;
+
 // A piece that came out in more than kSomeCharts charts is cut again, with the cells that it would
 // have alone, if these are kMuchFiner times as many. These charts are taken if they are at most
 // kMuchBetter of the others: cells of few triangles make ragged charts, and in a truck of small
@@ -95,53 +80,19 @@ constexpr std::size_t kSomeCharts = 4;
 constexpr std::uint32_t kMuchFiner = 2;
 constexpr double kMuchBetter = 0.9;
 
-// The cost of a piece's charts; less is better.
-struct PieceCost {
-  std::size_t charts = 0;
-  double seams = 0;  // length
-
-  bool operator<(const PieceCost& other) const {
-    return charts < other.charts || (charts == other.charts && seams < kShorter * other.seams);
-  }
-  static constexpr double kShorter = 1 - 1e-3;  // keeps rounding from deciding
-};
-
-std::vector<PieceCost> piece_costs(const Cut& cut) {
-  std::vector<PieceCost> costs(cut.topology.component_count);
-  const std::vector<std::uint32_t> piece = pieces_of(cut.topology, cut.cells);
-  for (std::uint32_t k = 0; k < cut.cells.count; ++k) {
-    if (piece[k] != kNoIndex && cut.merged.chart_of_cell[k] == k) ++costs[piece[k]].charts;
-  }
-  for (std::size_t i = 0; i < cut.coarse.arcs.size(); ++i) {
-    const CoarseArc& arc = cut.coarse.arcs[i];
-    if (arc.cell[1] == kNoIndex || cut.merged.joined[i]) continue;
-    costs[piece[arc.cell[0]]].seams += arc.length;
-  }
-  return costs;
-}
-
-// Returns the costs of the pieces over all cuts, each of which leaves out what another one takes.
-std::vector<PieceCost> chosen_costs(const std::vector<Cut>& cuts) {
-  std::vector<PieceCost> least;
-  for (const Cut& cut : cuts) {
-    const std::vector<PieceCost> costs = piece_costs(cut);
-    least.resize(costs.size());
-    for (std::size_t k = 0; k < costs.size(); ++k) {
-      if (!cut.left_out[k]) least[k] = costs[k];
-    }
-  }
-  return least;
-}
-
-// Which pieces are left out where cells ignore faces, and where faces bound them.
+// Which pieces are left out where cells ignore faces, and where faces bound them. The sides of a
+// bent moulding are faces, too, so its cells may also lie within rows of needles.
 struct Ways {
   std::vector<std::uint8_t> plain, walled;
+  std::vector<std::uint8_t> by_rows;  // one per piece: of the plain cells only those within rows
 
-  Ways(const CellPlan& plan, const Faces& faces, ChartPreset preset) {
+  Ways(const CellPlan& plan, const Regions& faces, const Regions& rows, ChartPreset preset) {
     const double least = preset == ChartPreset::fast ? kAllFaces : kSomeFaces;
     for (std::size_t k = 0; k < faces.share.size(); ++k) {
       const bool neither = plan.cells[k] == 0;
-      plain.push_back(neither || faces.share[k] >= kAllFaces);
+      const bool all_faces = faces.share[k] >= kAllFaces;
+      plain.push_back(neither || (all_faces && rows.share[k] == 0));
+      by_rows.push_back(all_faces);
       walled.push_back(neither || faces.share[k] < least);
     }
   }
@@ -149,21 +100,10 @@ struct Ways {
   // Leaves out pieces with few charts from the second way.
   void spare(const std::vector<PieceCost>& costs) {
     for (std::size_t k = 0; k < costs.size(); ++k) {
-      if (!plain[k] && costs[k].charts <= kFewCharts) walled[k] = 1;
+      if (costs[k].charts > 0 && costs[k].charts <= kFewCharts) walled[k] = 1;
     }
   }
 };
-
-// Leaves out the worse result of pieces that both cuts take. That of the second one is worse if it
-// has more than this share of the first one's charts.
-void choose(Cut& a, Cut& b, double share = 1) {
-  const std::vector<PieceCost> cost_a = piece_costs(a), cost_b = piece_costs(b);
-  for (std::size_t k = 0; k < cost_a.size(); ++k) {
-    if (a.left_out[k] || b.left_out[k]) continue;
-    const bool fewer = double(cost_b[k].charts) <= share * double(cost_a[k].charts);
-    (fewer && cost_b[k] < cost_a[k] ? a : b).left_out[k] = 1;
-  }
-}
 
 class Segmenter {
  public:
@@ -239,18 +179,58 @@ class Segmenter {
   // other one takes.
   void cut_in_both_ways(const CellPlan& plan, std::vector<Cut>& cuts) {
     Stopwatch watch(own_cpu_seconds);
-    const Faces faces = find_faces(topology_, plan);
-    Ways ways(plan, faces, options_.preset);
+    const Regions faces = find_faces(topology_, plan), rows = find_rows(topology_, plan);
+    Ways ways(plan, faces, rows, options_.preset);
     result_.timing.cells_cpu += watch.lap();
     const std::size_t first = cuts.size();
-    for (const bool walled : {false, true}) {
-      if (walled && cuts.size() > first) ways.spare(piece_costs(cuts[first]));
-      const std::span<const std::uint8_t> left_out = walled ? ways.walled : ways.plain;
-      if (std::find(left_out.begin(), left_out.end(), 0) == left_out.end()) continue;
-      cuts.push_back(cut({topology_, plan, walled ? &faces : nullptr, left_out}));
+    if (takes_any(ways.plain))
+      cut_plainly({topology_, plan, &rows, ways.plain}, ways.by_rows, cuts);
+    if (context_.cancelled()) return;
+    if (cuts.size() > first) ways.spare(chosen_costs(std::span(cuts).subspan(first)));
+    if (!takes_any(ways.walled)) return;
+    const std::size_t walled = cuts.size();
+    cuts.push_back(grow({topology_, plan, &faces, ways.walled}));
+    merge(cuts.back());
+    if (context_.cancelled()) return;
+    for (std::size_t i = first; i < walled; ++i) choose(cuts[i], cuts[walled]);
+  }
+
+  // Adds a cut with cells that nothing bounds, and one with cells that rows of needles bound. Each
+  // leaves out the pieces that the other one takes.
+  void cut_plainly(const CellInput& input, std::span<const std::uint8_t> by_rows,
+                   std::vector<Cut>& cuts) {
+    CellInput freely = input;
+    freely.regions = nullptr;
+    std::vector<Cut> made;
+    made.push_back(grow(freely));
+    if (context_.cancelled()) return;
+    bound_by_rows(input, made);
+    for (std::size_t k = 0; k < by_rows.size(); ++k) made[0].left_out[k] |= by_rows[k];
+    for (Cut& cut : made) {
       if (context_.cancelled()) return;
+      if (!takes_any(cut.left_out)) continue;
+      merge(cut);
+      cuts.push_back(std::move(cut));
     }
-    if (cuts.size() == first + 2) choose(cuts[first], cuts[first + 1]);
+  }
+
+  // Grows the cells of those pieces again, bounded by rows, whose fans err with the cells grown
+  // freely, and keeps the better ones.
+  void bound_by_rows(const CellInput& input, std::vector<Cut>& made) {
+    const std::vector<double>& share = input.regions->share;
+    if (std::all_of(share.begin(), share.end(), [](double s) { return s == 0; })) return;
+    const std::vector<double> free_error = fan_errors(made[0]);
+    std::vector<std::uint8_t> left_out = made[0].left_out;
+    for (std::size_t k = 0; k < share.size(); ++k) {
+      if (share[k] == 0 || free_error[k] < kFanError) left_out[k] = 1;
+    }
+    if (!takes_any(left_out)) return;
+    made.push_back(grow({topology_, input.plan, input.regions, left_out}));
+    if (context_.cancelled()) return;
+    const std::vector<double> error = fan_errors(made[1]);
+    for (std::size_t k = 0; k < share.size(); ++k) {
+      if (!left_out[k]) made[error[k] < kBetterFans * free_error[k] ? 0 : 1].left_out[k] = 1;
+    }
   }
 
   void take(const Cut& made) {
@@ -272,8 +252,8 @@ class Segmenter {
     return options;
   }
 
-  // The result is incomplete if the context is cancelled.
-  Cut cut(const CellInput& input) {
+  // Returns a cut with cells that are not merged yet. It is incomplete if the context is cancelled.
+  Cut grow(const CellInput& input) {
     Stopwatch watch(own_cpu_seconds);
     Cut made{topology_, {}, {}, {}, {input.left_out.begin(), input.left_out.end()}};
     made.cells = grow_cells(input, cell_options(), context_);
@@ -282,6 +262,12 @@ class Segmenter {
     result_.timing.cells_cpu += watch.lap();
     made.coarse = build_coarse(topology_, options_.crease_degrees, made.cells);
     result_.timing.coarse_cpu += watch.lap();
+    return made;
+  }
+
+  void merge(Cut& made) {
+    if (context_.cancelled()) return;
+    Stopwatch watch(own_cpu_seconds);
     MergeOptions merge = merge_options(options_.max_stretch);
     ExtremeNormals normals;
     if (cone_ > 0) {
@@ -290,9 +276,8 @@ class Segmenter {
       merge.cone = std::max(1e-9, cone_ - 2e-5);
       merge.cell_normals = &normals;
     }
-    made.merged = merge_cells(made.coarse, pieces_of(topology_, made.cells), merge, context_);
+    made.merged = merge_cells(made.coarse, pieces_of(made), merge, context_);
     result_.timing.merging_cpu += watch.lap();
-    return made;
   }
 
   void add_bands(const Cells& cells, const MergeResult& merged) {
@@ -301,7 +286,8 @@ class Segmenter {
       if (chart != kNoIndex) ++cell_count[chart];  // a cell may have lost all its triangles
     }
     for (const std::uint32_t k : cells.of_triangle) {
-      if (k != kNoIndex) ++triangles[merged.chart_of_cell[k]];
+      if (k != kNoIndex && merged.chart_of_cell[k] != kNoIndex)
+        ++triangles[merged.chart_of_cell[k]];
     }
     const double planned = triangles_per_cell(topology_, cell_options());
     for (std::uint32_t k = 0; k < cells.count; ++k) {

@@ -15,17 +15,17 @@ namespace {
 struct Part {
   Topology topology;
   CellPlan plan;
-  Faces faces;
+  Regions faces;
 };
 
 Part part_of(const Shape& shape) {
   Topology topology = topology_of(shape);
   const CellPlan plan = plan_cells(topology, {});
-  Faces faces = find_faces(topology, plan);
+  Regions faces = find_faces(topology, plan);
   return {std::move(topology), plan, std::move(faces)};
 }
 
-std::size_t count(const Faces& faces) {
+std::size_t count(const Regions& faces) {
   std::set<std::uint32_t> names(faces.of_triangle.begin(), faces.of_triangle.end());
   names.erase(kNoIndex);
   return names.size();

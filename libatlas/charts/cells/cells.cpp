@@ -151,7 +151,7 @@ Cells grow_triangles(const CellInput& input, const Grains& grains, const CellSee
   result.count = static_cast<std::uint32_t>(cells);
   result.of_triangle.reserve(n);
   for (const Ground& g : ground) result.of_triangle.push_back(g.cell);
-  pull_teeth(topology, input.faces, result);
+  pull_teeth(topology, input.regions, result);
   return result;
 }
 

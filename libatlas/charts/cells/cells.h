@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "libatlas/charts/cells/cell_plan.h"
-#include "libatlas/charts/cells/faces.h"
+#include "libatlas/charts/cells/regions.h"
 #include "libatlas/charts/geometry/cone.h"
 #include "libatlas/charts/mesh/topology.h"
 #include "libatlas/core/context.h"
@@ -21,13 +21,13 @@ struct Cells {
 struct CellInput {
   const Topology& topology;
   const CellPlan& plan;
-  // If not null, each cell lies within one face or within one region between faces, and each of
-  // these regions gets at least one cell, beyond the plan's numbers. If null, faces do not matter.
-  const Faces* faces = nullptr;
+  // If not null, each cell lies within one of these regions or within one part between them, and
+  // each of these gets at least one cell, beyond the plan's numbers.
+  const Regions* regions = nullptr;
   // One per piece: whether it gets no cells. Empty: all pieces get cells.
   std::span<const std::uint8_t> left_out = {};
 
-  bool walled(std::uint32_t t, std::uint32_t u) const { return faces && faces->part(t, u); }
+  bool walled(std::uint32_t t, std::uint32_t u) const { return regions && regions->part(t, u); }
 };
 
 // Grows cells from well-spaced seeds. The distance from seed s to a triangle with normal n is path

@@ -32,7 +32,7 @@ class FaceFinder {
   FaceFinder(const Topology& topology, const CellPlan& plan)
       : topology_(topology), plan_(plan), plane_(topology.triangle_count(), kNoIndex) {}
 
-  Faces run() {
+  Regions run() {
     faces_.of_triangle.assign(topology_.triangle_count(), kNoIndex);
     for (std::uint32_t k = 0; k < plan_.pieces.count(); ++k) {
       faces_.share.push_back(find_in(plan_.pieces.of(k), plan_.cells[k]));
@@ -155,7 +155,7 @@ class FaceFinder {
 
   const Topology& topology_;
   const CellPlan& plan_;
-  Faces faces_;
+  Regions faces_;
   std::vector<std::uint32_t> plane_;  // one per triangle
   std::vector<Plane> planes_;         // of the piece
   std::vector<std::uint32_t> triangles_, queue_;
@@ -163,7 +163,7 @@ class FaceFinder {
 
 }  // namespace
 
-Faces find_faces(const Topology& topology, const CellPlan& plan) {
+Regions find_faces(const Topology& topology, const CellPlan& plan) {
   return FaceFinder(topology, plan).run();
 }
 

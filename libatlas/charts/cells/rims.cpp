@@ -88,12 +88,12 @@ class Divider {
 
 // Returns the cell across two or three of a triangle's edges, which may be its own; kNoIndex if
 // there is none.
-std::uint32_t most_around(const Topology& topology, const Faces* faces, const Cells& cells,
+std::uint32_t most_around(const Topology& topology, const Regions* regions, const Cells& cells,
                           std::uint32_t t) {
   std::uint32_t around[3];
   for (std::uint32_t c = 0; c < 3; ++c) {
     const std::uint32_t o = topology.opposite[3 * t + c];
-    const bool end = o == kNoIndex || (faces && faces->part(t, o / 3));
+    const bool end = o == kNoIndex || (regions && regions->part(t, o / 3));
     around[c] = end ? kNoIndex : cells.of_triangle[o / 3];
   }
   if (around[0] == around[1] || around[0] == around[2]) return around[0];
@@ -158,7 +158,7 @@ std::size_t longest_loop(std::span<const RimLoop> loops) {
   return longest;
 }
 
-void pull_teeth(const Topology& topology, const Faces* faces, Cells& cells) {
+void pull_teeth(const Topology& topology, const Regions* regions, Cells& cells) {
   std::vector<std::uint32_t> size(cells.count, 0), waiting;
   for (const std::uint32_t k : cells.of_triangle) {
     if (k != kNoIndex) ++size[k];
@@ -168,7 +168,7 @@ void pull_teeth(const Topology& topology, const Faces* faces, Cells& cells) {
     while (!waiting.empty()) {
       const std::uint32_t t = waiting.back(), own = cells.of_triangle[t];
       waiting.pop_back();
-      const std::uint32_t to = most_around(topology, faces, cells, t);
+      const std::uint32_t to = most_around(topology, regions, cells, t);
       if (own == kNoIndex || to == own || to == kNoIndex || size[own] == 1) continue;
       --size[own];
       ++size[to];

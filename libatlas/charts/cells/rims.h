@@ -55,9 +55,9 @@ std::size_t longest_loop(std::span<const RimLoop> loops);
 // Moves each triangle with two or three edges on one other cell to that cell, until none is left.
 // Where two fronts arrive at about the same time, rounding would otherwise decide, and a single
 // triangle can change what is merged later. Cells stay connected, and none loses its last triangle.
-// The loop ends because every move shortens the borders by at least one edge. If `faces` is not
-// null, no triangle crosses the border of a face.
-void pull_teeth(const Topology& topology, const Faces* faces, Cells& cells);
+// The loop ends because every move shortens the borders by at least one edge. If
+// `regions` is not null, no triangle crosses the border of one.
+void pull_teeth(const Topology& topology, const Regions* regions, Cells& cells);
 
 // Divides cells in two, repeatedly, until the border of each is one loop, apart from small holes of
 // the mesh. Returns the borders.

@@ -246,4 +246,14 @@ CoarseMesh build_coarse(const Topology& topology, double crease_degrees, Cells& 
   return mesh;
 }
 
+double fan_error(const CoarseMesh& mesh, const CoarseCell& cell) {
+  double twice = 0;
+  for (std::uint32_t s = cell.first_slot; s < cell.first_slot + cell.slot_count; ++s) {
+    const glm::dvec3 centre = to_glm(cell.centre), a = to_glm(mesh.slot_position[s]) - centre,
+                     b = to_glm(mesh.slot_position[mesh.next_slot(s, cell)]) - centre;
+    twice += glm::length(glm::cross(a, b));
+  }
+  return cell.area > 0 ? std::abs(0.5 * twice / cell.area - 1) : 0;
+}
+
 }  // namespace atlas

@@ -55,4 +55,9 @@ struct CoarseMesh {
 // Small holes of the mesh within a cell are ignored.
 CoarseMesh build_coarse(const Topology& topology, double crease_degrees, Cells& cells);
 
+// Returns by how much the area of a cell's fan differs from the cell's own area, as a share of the
+// latter; 0 for a cell without area. Fans of compact cells err by some 7 %, for outlines are
+// jagged.
+double fan_error(const CoarseMesh& mesh, const CoarseCell& cell);
+
 }  // namespace atlas
