@@ -34,7 +34,7 @@ constexpr double kMostGained = 1.035, kMostExchanged = 1.015;
 // A page that exchanges charts is drawn again if further draws may fill it to this share of what
 // the exchange needs. With a share of 1, sixty charts on four pages filled 0.543 instead of 0.569,
 // because further draws gain more than usual on pages that are this poorly filled.
-constexpr double kNearly = 0.94;
+constexpr double kNearly = 0.9;
 // Minimum gain in scale, by an exchange or by all together.
 constexpr double kLeastGain = 1.002;
 // Minimum gain that must be expected before both pages are pressed.

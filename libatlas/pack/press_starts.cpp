@@ -23,7 +23,9 @@ constexpr std::size_t kStartedCharts = 480;
 constexpr std::size_t kMostStarts = 20;
 // The shares of their limits after which searches are compared, and the worse half given up: for
 // searches of few layouts, and for those of `best`, in which only the last four get many layouts.
-// Searches over few charts are not compared, because one lucky layout decides there.
+// Searches over few charts are not compared, because one lucky layout decides there. Neither are
+// those of the first draw, whose cells are coarse: they are cheap, and six models filled 0.7 %
+// less.
 constexpr std::array kLegs{0.25, 0.5, 1.0};
 constexpr std::array kAllAtOnce{1.0};
 constexpr std::array kLongLegs{1 / 32.0, 1 / 16.0, 1 / 8.0, 1.0};
@@ -92,7 +94,7 @@ std::uint32_t PressStarts::doublings_in(std::uint32_t round) const {
 }
 
 std::span<const double> PressStarts::legs(std::uint32_t round) const {
-  if (pieces_.size() <= kFewCharts) return kAllAtOnce;
+  if (pieces_.size() <= kFewCharts || round == 0) return kAllAtOnce;
   if (doublings_in(round) < kFirstDoublings) return kLegs;
   return kLongLegs;
 }

@@ -203,6 +203,35 @@ TEST_F(PackedPages, SquarePagesAreFilledAsSquares) {
   EXPECT_NEAR(length("--square --crop --rotations 1"), 256, 1);
 }
 
+// Three rows of three discs fill a square to 0.785 without gutters, if they lie in the boxes of a
+// grid. A search over outlines finds less than 0.7.
+TEST_F(PackedPages, EqualDiscsLieInRows) {
+  constexpr int kSides = 48;
+  std::string text;
+  for (int k = 0; k < 9; ++k) {
+    for (int i = 0; i < kSides; ++i) {
+      const double a = 2 * std::numbers::pi * i / kSides;
+      text += fmt::format("v {0} {1} 0\nvt {0} {1}\n", 3 * k + std::cos(a), std::sin(a));
+    }
+    for (int i = 2; i < kSides; ++i) {
+      const int first = kSides * k + 1;
+      text += fmt::format("f {0}/{0} {1}/{1} {2}/{2}\n", first, first + i - 1, first + i);
+    }
+  }
+  write("m.obj", text);
+  const RunResult r = run("mesh m.obj -o out.obj --json --padding 2 --page 512");
+  ASSERT_EQ(r.exit_code, 0) << r.output;
+  const std::size_t at = r.output.find("\"utilization\":");
+  ASSERT_NE(at, std::string::npos);
+  EXPECT_GT(std::stod(r.output.substr(at + 14)), 0.75);
+  const auto pages = pages_of(read("out.obj"));
+  ASSERT_EQ(pages.size(), 1u);
+  EXPECT_GE(pages[0].low.x, 0.99);
+  EXPECT_GE(pages[0].low.y, 0.99);
+  EXPECT_LE(pages[0].high.x, 511.01);
+  EXPECT_LE(pages[0].high.y, 511.01);
+}
+
 // Overlaps are told; a mesh without them is packed without a word.
 TEST_F(PackedPages, ChartsThatLieOnThemselvesAreTold) {
   // Two squares, the second one folded back onto the first, and a square alone.
