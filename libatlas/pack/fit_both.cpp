@@ -49,12 +49,15 @@ class Comparison {
   }
 
   // Returns whether packing by outlines may win. It does not if boxes fill the pages, and one page
-  // more would not make all charts larger. Neither does it if there are many charts that nearly
-  // fill their boxes, because packing by boxes then leaves less of a page empty.
+  // more would not make all charts larger. (Where charts have to be as large as they can be, and
+  // pages end where charts do, full pages say nothing about the scale.) Neither does it if there
+  // are many charts that nearly fill their boxes, because packing by boxes then leaves less of a
+  // page empty.
   bool may_beat(const FitResult& boxed) const {
     constexpr std::size_t kMany = 1000;
     const bool large = boxed.pages.size() >= options_.pages || boxed.scale >= options_.max_scale;
-    if (boxed.filled > kFull && large) return false;
+    const bool given = options_.power_of_two || options_.free_aspect;
+    if (boxed.filled > kFull && large && given) return false;
     if (items_.size() < kMany) return true;
     double box_area = 0;
     for (const FitItem& item : items_) box_area += item.width * item.height;

@@ -149,7 +149,8 @@ TEST_F(PackedPages, CroppingLeavesChartsAsLargeAsTheyAre) {
   };
   write_triangles();
   EXPECT_EQ(lengths("--crop --pages 3"), lengths("--pages 3"));
-  // Three squares leave a quarter of a square page free, and less of a page of another shape.
+  // Three squares leave a quarter of a square page free. Of the cropped pages that are found, the
+  // one of their boxes is the fullest, by a few thousandths of a percent.
   std::string squares;
   for (int k = 0; k < 3; ++k) {
     for (const auto& [x, y] : {std::pair(0, 0), {1, 0}, {1, 1}, {0, 1}})
@@ -160,7 +161,7 @@ TEST_F(PackedPages, CroppingLeavesChartsAsLargeAsTheyAre) {
   EXPECT_NEAR(*lengths("").begin(), 1280, 5);
   EXPECT_EQ(lengths("--crop --pot"), lengths(""));
   EXPECT_EQ(lengths("--crop --square"), lengths(""));
-  EXPECT_LT(*lengths("--crop").rbegin(), 1270);
+  EXPECT_NEAR(*lengths("--crop").rbegin(), 1280, 5);
 }
 
 // The border is kept free on all sides, and the page is the smallest power of two around it.
