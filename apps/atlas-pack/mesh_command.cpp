@@ -118,12 +118,10 @@ PackedAtlas describe(const FitResult& fit) {
   return atlas;
 }
 
-// Returns the largest scale that can fit. At scale 1 the triangles have the area of the pages; if
-// they overlap each other, a larger scale fits.
-double largest_scale(std::span<const ChartShape> shapes, double page_area, const Context& context) {
+// Returns the largest scale that can fit charts that cover this area. At scale 1 the triangles have
+// the area of the pages; if they overlap each other, a larger scale fits.
+double largest_scale(double covered, double page_area, const Context& context) {
   constexpr double kRounding = 1e-6;
-  const Result<double> measured = covered_area(shapes, context);
-  const double covered = measured.ok() ? *measured : 0;  // the packer refuses the same shapes
   if (!(covered > 0) || covered > (1 - kRounding) * page_area) return 1;
   context.say(
       fmt::format("charts lie on themselves, as those of tiled textures do: all together "
@@ -170,10 +168,13 @@ Result<FitResult> fit_charts(const PackCommand& c, std::span<const FitItem> item
   fit.effort = o.effort;
   fit.seed = o.seed;
   fit.shapes = shapes;
-  fit.max_scale = largest_scale(shapes, double(c.page_side) * c.page_side * c.pages, context);
+  const Result<double> measured = covered_area(shapes, context);
+  fit.shapes_area = measured.ok() ? *measured : 0;  // the packer refuses the same shapes
+  fit.max_scale =
+      largest_scale(fit.shapes_area, double(c.page_side) * c.page_side * c.pages, context);
   fit.rotations = c.rotations;
   fit.any_angle = c.rotations > 4;
-  Result<FitResult> fitted = fit_pages(items, fit, context);
+  Result<FitResult> fitted = fit_boxes_or_outlines(items, fit, context);
   if (!fitted.ok() && fitted.status().code() == ErrorCode::no_solution)
     return Status(
         ErrorCode::no_solution,
@@ -197,7 +198,7 @@ Result<FitResult> fit_charts(const PackCommand& c, std::span<const FitItem> item
     if (o.power_of_two) page = {round_up(page.width), round_up(page.height)};
     whole += static_cast<double>(page.area());
   }
-  if (whole > 0) fitted->utilization *= used / whole;
+  if (whole > 0) fitted->utilization = fitted->filled * used / whole;
   return fitted;
 }
 

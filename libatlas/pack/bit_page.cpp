@@ -190,13 +190,14 @@ void BitPage::all_candidates(std::int32_t x0, std::int32_t x1) {
   if (x1 % 64 != 63) candidates_[high_ - 1] &= (std::uint64_t{2} << (x1 % 64)) - 1;
 }
 
-bool BitPage::find_in_row(const MaskTests& tests, Window window, std::int32_t y, Place& place) {
-  return has_short_rows() ? find_in_short_row(tests, window, y, place)
-                          : find_in_long_row(tests, window, y, place);
+bool BitPage::find_in_row(const MaskTests& tests, const Window& window, RecentProbes& recent,
+                          Place& place) {
+  return has_short_rows() ? find_in_short_row(tests, window, recent, place)
+                          : find_in_long_row(tests, window, place);
 }
 
-bool BitPage::find_in_long_row(const MaskTests& tests, Window window, std::int32_t y,
-                               Place& place) {
+bool BitPage::find_in_long_row(const MaskTests& tests, const Window& window, Place& place) {
+  const std::int32_t y = window.y0;
   all_candidates(window.x0, window.x1);
   std::int32_t row_before = -1;
   for (const Probe& p : tests.probes) {
@@ -218,11 +219,12 @@ bool BitPage::find(const MaskTests& tests, Window window, Place& place) {
   window.x1 = std::min(window.x1, width_ - tests.width);
   window.y1 = std::min(window.y1, height_ - tests.height);
   if (window.x0 > window.x1) return false;
+  RecentProbes recent;
   for (std::int32_t y = std::max(0, window.y0); y <= window.y1; y += 64)
     for (std::uint64_t feet = likely_feet(tests, y); feet != 0; feet &= feet - 1) {
       const std::int32_t foot = y + std::countr_zero(feet);
       if (foot > window.y1) return false;
-      if (find_in_row(tests, window, foot, place)) return true;
+      if (find_in_row(tests, {window.x0, window.x1, foot}, recent, place)) return true;
     }
   return false;
 }

@@ -2,8 +2,10 @@
 // place of an arbitrary mask.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "libatlas/pack/outline_mask.h"
@@ -31,6 +33,29 @@ struct MaskTests {
   std::vector<Probe> probes;
 };
 MaskTests test_order(const Mask& mask);
+
+// The probes of a mask that ruled rows out last, the latest first, by their index in
+// MaskTests::probes. What rules a row out is likely to rule out the next row as well, so these
+// probes are made first: of six to eight probes a row, four are left.
+class RecentProbes {
+ public:
+  static constexpr std::size_t kMost = 4;
+
+  std::size_t size() const { return size_; }
+  std::uint32_t operator[](std::size_t k) const { return probes_[k]; }
+
+  // Records that the recent probe at place k ruled a row out again.
+  void again(std::size_t k) { std::swap(probes_[0], probes_[k]); }
+  void add(std::size_t probe) {
+    if (size_ < kMost) ++size_;
+    probes_[size_ - 1] = static_cast<std::uint32_t>(probe);
+    again(size_ - 1);
+  }
+
+ private:
+  std::array<std::uint32_t, kMost> probes_;
+  std::uint32_t size_ = 0;
+};
 
 // Returns the length of the longest run of ones.
 std::int32_t longest_run(std::span<const std::uint64_t> bits);
@@ -67,9 +92,11 @@ class BitPage {
   // once.
   std::uint64_t likely_feet(const MaskTests& tests, std::int32_t y);
 
-  // Finds the leftmost place with the foot in row y and window.x0 <= x <= window.x1, where
-  // window.x1 must be at most width() - mask.width. Returns false if there is none.
-  bool find_in_row(const MaskTests& tests, Window window, std::int32_t y, Place& place);
+  // Finds the leftmost place with the foot in row window.y0 and window.x0 <= x <= window.x1, where
+  // window.x1 must be at most width() - mask.width. Returns false if there is none. `recent` should
+  // come from the search in the row before, and must belong to the same mask.
+  bool find_in_row(const MaskTests& tests, const Window& window, RecentProbes& recent,
+                   Place& place);
 
   void put(const Mask& mask, Place place);
   void take_away(const Mask& mask, Place place);
@@ -91,9 +118,10 @@ class BitPage {
   // Short rows, which most pages have, are kept in registers; see short_rows.cpp.
   struct ShortRows;
   bool has_short_rows() const { return words_ <= 8; }
-  bool find_in_short_row(const MaskTests& tests, Window window, std::int32_t y, Place& place);
+  bool find_in_short_row(const MaskTests& tests, const Window& window, RecentProbes& recent,
+                         Place& place);
   void rebuild_short_row(std::int32_t y);
-  bool find_in_long_row(const MaskTests& tests, Window window, std::int32_t y, Place& place);
+  bool find_in_long_row(const MaskTests& tests, const Window& window, Place& place);
   void rebuild_long_row(std::int32_t y, std::int32_t begin, std::int32_t end);
   void set_cells(const Mask& mask, Place place, bool free);
   void rebuild(std::int32_t y, std::int32_t begin, std::int32_t end);

@@ -72,6 +72,9 @@ struct FitOptions {
   // that `standard` has already tried for the same items. They count as effort, and whatever would
   // only repeat them is left out.
   std::uint64_t tried = 0;
+  // For fit_boxes_or_outlines: the area that the shapes cover at scale 1, in square texels. 0: the
+  // sum of their triangles, which is the same unless charts overlap themselves.
+  double shapes_area = 0;
 };
 
 // A point of the curve of density against effort.
@@ -101,7 +104,7 @@ struct FitPlacement {
   // own, which is the content divided by the size at scale 1; rounding up and minimum_side make it
   // larger.
   double scale = 1;
-  Vec2d offset = {};  // set for outlines only
+  Vec2d offset = {};  // set for outlines, and by fit_boxes_or_outlines
 };
 
 struct FitResult {
@@ -110,6 +113,10 @@ struct FitResult {
   std::vector<Extent> pages = {};             // the pages that hold something; at most N
   // Area of the contents (boxes) or shapes (outlines) / area of the pages.
   double utilization = 0;
+  // Set by fit_boxes_or_outlines: whether the placements are those of boxes, and the area of the
+  // shapes, as they are scaled, / area of the pages.
+  bool boxes = false;
+  double filled = 0;
   double box_utilization = 0;  // area of the boxes with gutters / area of the pages; boxes only
   // The area of small holes and narrow bays in shapes in which no shape could lie, in square texels
   // at scale 1. Set for outlines only.
@@ -136,6 +143,15 @@ struct FitResult {
 // do not fit N pages), cancelled.
 Result<FitResult> fit_pages(std::span<const FitItem> items, const FitOptions& options,
                             const Context& context);
+
+// Does fit_pages by boxes, and by outlines if these may win, and returns the better fit: the one of
+// the larger scale, of the smaller pages if the scales are equal, or of the fuller page with
+// free_aspect. Round charts of one size, for instance, lie more densely in rows of boxes than a
+// search over outlines finds. options.shapes has one shape per item. Placements of boxes get offset
+// and angle as those of outlines have them: where no minimum side holds, the chart point p goes to
+// offset + scale · R(angle) · p in either case. Errors: those of fit_pages.
+Result<FitResult> fit_boxes_or_outlines(std::span<const FitItem> items, const FitOptions& options,
+                                        const Context& context);
 
 // Does the last step of fit_pages with press_pages for a fit to outlines that was made without it.
 // `fitted` is the result of fit_pages for the same items and options. Returns a denser fit if

@@ -186,7 +186,7 @@ class PlaceSearch {
       const auto lift = static_cast<std::int32_t>(std::floor(piece.lifts[k]));
       const std::int32_t foot = last.lowest(mask);
       if (foot > page.height() - mask.height) continue;
-      feet_[count_++] = {k, lift, foot, page.height() - mask.height, 0, 0};
+      feet_[count_++] = {k, lift, foot, page.height() - mask.height, 0, 0, {}};
     }
   }
 
@@ -221,6 +221,7 @@ class PlaceSearch {
     std::int32_t row, last;  // the next row to stand on, and the last possible row
     std::uint64_t likely;    // bit k: row + k; `known` bits are valid
     std::int32_t known;
+    RecentProbes recent;
 
     std::int32_t height() const { return row + lift; }
   };
@@ -240,7 +241,7 @@ class PlaceSearch {
       f.known = 64;
     }
     if ((f.likely & 1) != 0) {
-      if (page_.find_in_row(tests, {0, page_.width() - tests.width}, f.row, place.at)) {
+      if (page_.find_in_row(tests, {0, page_.width() - tests.width, f.row}, f.recent, place.at)) {
         place.placed = true;
         place.direction = f.direction;
         return true;

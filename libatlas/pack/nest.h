@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <limits>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -120,6 +121,27 @@ struct NestSearchResult {
   std::uint64_t layouts = 0;  // layouts tried
   std::uint64_t work = 0;     // in words
 };
+
+// A search for a low strip that can be interrupted, so that several can be compared half-way.
+class NestSearch {
+ public:
+  // The pieces must outlive the search.
+  NestSearch(std::span<const Piece> pieces, const NestPlan& start,
+             const NestSearchOptions& options);
+  NestSearch(NestSearch&&) noexcept;
+  NestSearch& operator=(NestSearch&&) noexcept;
+  ~NestSearch();
+
+  // Searches until this share (0 to 1) of the limits of work and layouts is used up. At least the
+  // start is laid out. Returns the lowest nest so far; it stays valid until the next call.
+  const NestSearchResult& run(double share, const Context& context);
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+// Searches until the limits are reached.
 NestSearchResult search_nest(std::span<const Piece> pieces, const NestPlan& start,
                              const NestSearchOptions& options, const Context& context);
 

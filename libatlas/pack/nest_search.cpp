@@ -71,6 +71,12 @@ double energy(const Nest& nest, double total_cells) {
   return nest.used_height + mean / std::max(1.0, double(nest.used_height));
 }
 
+double sum_of_cells(std::span<const Piece> pieces) {
+  double sum = 0;
+  for (const Piece& p : pieces) sum += static_cast<double>(p.cells());
+  return sum;
+}
+
 // Returns the maximum height of a strip. Pieces that do not nest, such as slanted needles, could
 // pile up without limit. They are left over beyond the larger of 256 MiB of rows and four times the
 // height that the pieces fill.
@@ -86,42 +92,47 @@ std::int32_t most_rows(std::span<const Piece> pieces, double total_cells, std::i
 
 }  // namespace
 
-NestSearchResult search_nest(std::span<const Piece> pieces, const NestPlan& start,
-                             const NestSearchOptions& options, const Context& context) {
-  double total = 0;
-  for (const Piece& p : pieces) total += static_cast<double>(p.cells());
-  BitPage page(options.width, most_rows(pieces, total, options.width), longest_run(pieces));
-  NestSearchResult found;
-  std::uint64_t& spent = found.work;
-  // A single piece has no order. After the start it is placed in each direction once.
-  const bool alone = start.order.size() == 1;
-  const std::uint64_t most_layouts =
-      alone ? std::min<std::uint64_t>(options.layouts, 1 + pieces[start.order[0]].masks.size())
-            : options.layouts;
-  PlacedPlan current, next;
-  const auto evaluate = [&](PlacedPlan& placed) {
+struct NestSearch::State {
+  State(std::span<const Piece> all, const NestPlan& start, const NestSearchOptions& how)
+      : pieces(all),
+        options(how),
+        total(sum_of_cells(all)),
+        page(how.width, most_rows(all, total, how.width), longest_run(all)),
+        moves(all, how.seed),
+        alone(start.order.size() == 1) {
+    // A single piece has no order. After the start it is placed in each direction once.
+    if (alone)
+      options.layouts = std::min<std::uint64_t>(how.layouts, 1 + all[start.order[0]].masks.size());
+    next.plan = start;
+  }
+
+  double evaluate(PlacedPlan& placed) {
     place_pieces_as(pieces, current, page, placed);
-    spent += std::accumulate(placed.work.begin(), placed.work.end(), 20 * pieces.size());
+    found.work += std::accumulate(placed.work.begin(), placed.work.end(), 20 * pieces.size());
     ++found.layouts;
     return energy(placed.nest, total);
-  };
-  next.plan = start;
-  double current_energy = evaluate(next), best_energy = current_energy;
-  std::swap(current, next);
-  found.nest = current.nest;
-  PlanMoves moves(pieces, options.seed);
-  const double begun = wall_seconds();
-  while (spent < options.work && found.layouts < most_layouts && !pieces.empty()) {
-    if (context.cancelled() || wall_seconds() - begun > options.seconds) break;
-    if (found.nest.left_over.empty() && found.nest.used_height <= options.enough) break;
+  }
+
+  void begin() {
+    current_energy = best_energy = evaluate(next);
+    std::swap(current, next);
+    found.nest = current.nest;
+    begun = wall_seconds();
+  }
+
+  // Returns the share of its limits that the search has used up.
+  double spent() const {
+    return std::max(double(found.work) / double(options.work),
+                    double(found.layouts) / double(options.layouts));
+  }
+
+  void step() {
     next.plan = current.plan;
     if (alone)
-      next.plan.direction[start.order[0]] = static_cast<std::int32_t>(found.layouts) - 1;
+      next.plan.direction[current.plan.order[0]] = static_cast<std::int32_t>(found.layouts) - 1;
     else
       moves.disturb(next.plan, current.nest);
-    const double left =
-        1 - std::max(static_cast<double>(spent) / static_cast<double>(options.work),
-                     static_cast<double>(found.layouts) / static_cast<double>(options.layouts));
+    const double left = 1 - spent();
     const double temperature = std::max(1e-9, 0.004 * best_energy * left * left);
     // This is Metropolis' rule, but the random number is drawn first, so that a layout can be given
     // up as soon as it is too high.
@@ -137,7 +148,40 @@ NestSearchResult search_nest(std::span<const Piece> pieces, const NestPlan& star
       current_energy = e;
     }
   }
-  return found;
+
+  std::span<const Piece> pieces;
+  NestSearchOptions options;
+  double total;  // cells of all pieces
+  BitPage page;
+  PlanMoves moves;
+  bool alone;
+  PlacedPlan current, next;
+  NestSearchResult found;
+  double current_energy = 0, best_energy = 0, begun = 0;
+};
+
+NestSearch::NestSearch(std::span<const Piece> pieces, const NestPlan& start,
+                       const NestSearchOptions& options)
+    : state_(std::make_unique<State>(pieces, start, options)) {}
+NestSearch::NestSearch(NestSearch&&) noexcept = default;
+NestSearch& NestSearch::operator=(NestSearch&&) noexcept = default;
+NestSearch::~NestSearch() = default;
+
+const NestSearchResult& NestSearch::run(double share, const Context& context) {
+  State& s = *state_;
+  if (s.found.layouts == 0) s.begin();
+  while (s.spent() < share && !s.pieces.empty()) {
+    if (context.cancelled() || wall_seconds() - s.begun > s.options.seconds) break;
+    const Nest& best = s.found.nest;
+    if (best.left_over.empty() && best.used_height <= s.options.enough) break;
+    s.step();
+  }
+  return s.found;
+}
+
+NestSearchResult search_nest(std::span<const Piece> pieces, const NestPlan& start,
+                             const NestSearchOptions& options, const Context& context) {
+  return NestSearch(pieces, start, options).run(1, context);
 }
 
 }  // namespace atlas::pack

@@ -44,7 +44,7 @@ class Press {
   }
 
   PressedPage run() {
-    PressedPage best = begun_page(options_);
+    PressedPage best = begun_page(options_, kStandardDraws);
     const double begun = wall_seconds();
     while (!context_.cancelled()) {
       draw(best);
@@ -225,11 +225,11 @@ class Press {
 
 }  // namespace
 
-PressedPage begun_page(const FitOptions& options) {
+PressedPage begun_page(const FitOptions& options, std::uint32_t draws) {
   PressedPage page;
   if (options.preset != PackPreset::best || options.tried == 0) return page;
   page.layouts = options.tried;
-  page.draws = 1;
+  page.draws = draws;
   return page;
 }
 
@@ -267,7 +267,7 @@ void draw_again(std::span<const ChartOutline> outlines, const FitOptions& option
 }
 
 bool worth_another_draw(std::uint32_t draws, double fill, double wanted_fill) {
-  return draws < 3 && fill < (draws > 1 ? kPoorerFill : kPoorFill) &&
+  return draws < kStandardDraws && fill < (draws > 1 ? kPoorerFill : kPoorFill) &&
          (draws > 1 ? kMostRedrawnTwice : kMostRedrawn) * fill >= wanted_fill;
 }
 

@@ -40,9 +40,9 @@ struct PressedPage {
   std::uint32_t draws = 0;  // number of times that random starts were drawn
 };
 
-// Returns the page with which a search begins: an empty one, or the state after the first round if
-// `standard` has done that already.
-PressedPage begun_page(const FitOptions& options);
+// Returns the page with which a search begins: an empty one, or the state after this many draws,
+// which are the most that `standard` makes, if it has been there already.
+PressedPage begun_page(const FitOptions& options, std::uint32_t draws);
 
 // Records a round of a search that has found `best` after this many seconds. `use` is the share of
 // the page that it fills. If this is more than before, a point is added to the curve. Returns the

@@ -1,6 +1,7 @@
 #include "libatlas/pack/press_starts.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -20,11 +21,20 @@ constexpr double kMostCells = 1 << 21;  // number of cells of the finest grid in
 // Charts in all starts together; fewer charts get more starts.
 constexpr std::size_t kStartedCharts = 480;
 constexpr std::size_t kMostStarts = 20;
+// The shares of their limits after which searches are compared, and the worse half given up: for
+// searches of few layouts, and for those of `best`, in which only the last four get many layouts.
+// Searches over few charts are not compared, because one lucky layout decides there. Neither are
+// those of the first draw, whose cells are coarse: they are cheap, and six models filled 0.7 %
+// less.
+constexpr std::array kLegs{0.25, 0.5, 1.0};
+constexpr std::array kAllAtOnce{1.0};
+constexpr std::array kLongLegs{1 / 32.0, 1 / 16.0, 1 / 8.0, 1.0};
+constexpr std::size_t kLeastLeft = 4, kFewCharts = 5;
 // Words examined by all starts together, 2 ns each.
 constexpr std::uint64_t kSearchWork = 160'000'000;
 constexpr std::uint64_t kLayouts = 32;  // layouts of one start
 // Maximum number of doublings: `best` doubles both kSearchWork and kLayouts each round.
-constexpr std::uint32_t kMostDoublings = 4;
+constexpr std::uint32_t kMostDoublings = 4, kFirstDoublings = 2;
 constexpr std::uint32_t kDirections = 24;
 // The number of cells across a page: normally, for many charts, and from the second draw on. Finer
 // cells lose less of the gaps between charts with narrow limbs, but they take longer.
@@ -66,11 +76,47 @@ std::vector<PressStart> PressStarts::make(std::uint32_t round) {
   const std::size_t n = std::max<std::size_t>(1, outlines_.size());
   const std::size_t count =
       n == 1 ? 1 : std::clamp<std::size_t>(kStartedCharts / n, 1, kMostStarts);
-  std::vector<PressStart> starts(count);
-  parallel_for(context_, count, 1, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t k = begin; k < end; ++k) starts[k] = start(k, count, round);
-  });
+  if (n == 1) return {alone()};
+  std::vector<Runner> runners;
+  for (std::size_t k = 0; k < count; ++k) runners.push_back(runner(k, count, round));
+  race(runners, round);
+  std::vector<PressStart> starts;
+  for (Runner& r : runners) starts.push_back(std::move(r.start));
   return starts;
+}
+
+// Returns how often the number of layouts is doubled in a round. Only `best` doubles it. If it goes
+// on where `standard` has ended, it begins with kFirstDoublings.
+std::uint32_t PressStarts::doublings_in(std::uint32_t round) const {
+  if (options_.preset != PackPreset::best) return 0;
+  const bool goes_on = options_.tried > 0 && round >= kStandardDraws;
+  return std::min(goes_on ? round - kStandardDraws + kFirstDoublings : round, kMostDoublings);
+}
+
+std::span<const double> PressStarts::legs(std::uint32_t round) const {
+  if (pieces_.size() <= kFewCharts || round == 0) return kAllAtOnce;
+  if (doublings_in(round) < kFirstDoublings) return kLegs;
+  return kLongLegs;
+}
+
+// Runs the searches of all starts. Whether a strip's width suits the charts shows early, so the
+// worse half is given up twice on the way, and the searches take half the time.
+void PressStarts::race(std::vector<Runner>& runners, std::uint32_t round) const {
+  std::vector<Runner*> left;
+  for (Runner& r : runners) left.push_back(&r);
+  for (const double share : legs(round)) {
+    parallel_for(context_, left.size(), 1, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t k = begin; k < end; ++k) {
+        Runner& r = *left[k];
+        note(r.search.run(share, context_), r);
+      }
+    });
+    std::stable_sort(left.begin(), left.end(), [&](const Runner* a, const Runner* b) {
+      return goodness(a->start.page, options_) > goodness(b->start.page, options_);
+    });
+    left.resize(std::clamp<std::size_t>((left.size() + 1) / 2, std::min(kLeastLeft, left.size()),
+                                        left.size()));
+  }
 }
 
 // Rasterises the charts as rigid bodies. The search only needs outlines as fine as its cells,
@@ -145,29 +191,29 @@ std::int32_t PressStarts::strip_width(std::size_t k, std::size_t count, double s
   return std::max(narrowest, static_cast<std::int32_t>(width));
 }
 
-PressStart PressStarts::start(std::size_t k, std::size_t count, std::uint32_t round) const {
+PressStarts::Runner PressStarts::runner(std::size_t k, std::size_t count,
+                                        std::uint32_t round) const {
   Random random(options_.seed * 0x10001 + round * kMostStarts + k);
   const double shift = round > 0 ? 0.04 * (random.unit() - 0.5) : 0;
   NestSearchOptions search;
   search.width = strip_width(k, count, shift);
   search.seed = random.next();
 
-  const std::uint32_t doublings =
-      options_.preset == PackPreset::best ? std::min(round, kMostDoublings) : 0;
+  const std::uint32_t doublings = doublings_in(round);
   search.work = kSearchWork / count << doublings;
   search.layouts = kLayouts << doublings;
-  PressStart start;
-  if (pieces_.size() == 1) return alone();
   // If there are only few charts, the search changes their order often enough.
   const LargestBy by = pieces_.size() < kManyCharts ? LargestBy::cells : LargestBy::boxes;
-  const NestSearchResult found = search_nest(pieces_, plan_by_size(pieces_, by), search, context_);
-  const Nest& nest = found.nest;
+  return {NestSearch(pieces_, plan_by_size(pieces_, by), search), search.width, {}};
+}
+
+void PressStarts::note(const NestSearchResult& found, Runner& runner) const {
+  PressStart& start = runner.start;
   start.layouts = found.layouts;
   start.work = found.work;
-  if (!nest.left_over.empty()) return start;
-  put_down(nest, start);
-  start.page = {search.width * double(cell_), nest.used_height * double(cell_)};
-  return start;
+  if (!found.nest.left_over.empty()) return;
+  put_down(found.nest, start);
+  start.page = {runner.width * double(cell_), found.nest.used_height * double(cell_)};
 }
 
 // Places a single chart in the direction in which its page is smallest.

@@ -13,6 +13,9 @@
 
 namespace atlas::pack {
 
+// Number of draws that presets other than `best` make of a page at most.
+inline constexpr std::uint32_t kStandardDraws = 3;
+
 // A chart in the frame of its mask, at the scale of the starts: the shape's point p lies at origin
 // + scale p.
 struct DrawnChart {
@@ -56,7 +59,17 @@ class PressStarts {
   void draw_one(std::size_t i, int fine);
   void draw_pieces(int cells);
   std::int32_t strip_width(std::size_t k, std::size_t count, double shift) const;
-  PressStart start(std::size_t k, std::size_t count, std::uint32_t round) const;
+  // A start whose layout is still searched for on a strip of this width in cells.
+  struct Runner {
+    NestSearch search;
+    std::int32_t width;
+    PressStart start;
+  };
+  Runner runner(std::size_t k, std::size_t count, std::uint32_t round) const;
+  std::uint32_t doublings_in(std::uint32_t round) const;
+  std::span<const double> legs(std::uint32_t round) const;
+  void race(std::vector<Runner>& runners, std::uint32_t round) const;
+  void note(const NestSearchResult& found, Runner& runner) const;
   PressStart alone() const;
   void put_down(const Nest& nest, PressStart& start) const;
 

@@ -13,6 +13,8 @@ namespace atlas::pack {
 namespace {
 
 using Words = std::uint64_t __attribute__((vector_size(32)));
+using HalfWords = std::uint64_t __attribute__((vector_size(16)));
+using SignedWords = std::int64_t __attribute__((vector_size(32)));
 
 ATLAS_INLINE Words load(const std::uint64_t* from) {
   Words words;
@@ -48,14 +50,15 @@ struct Bits {
     for (int v = 0; v < kVectors; ++v) store(at[v], to + 4 * v);
   }
 
-  // Bits first .. last of the row.
-  ATLAS_INLINE static Bits range(std::int32_t first, std::int32_t last) {
+  // Bits first .. last of the row. Words are compared as signed numbers, because processors have
+  // no instruction for others.
+  ATLAS_INLINE static Bits range(std::uint32_t first, std::uint32_t last) {
     const std::uint64_t all = ~std::uint64_t{0};
-    const auto low = std::uint64_t(first) / 64, high = std::uint64_t(last) / 64;
+    const auto low = std::int64_t(first / 64), high = std::int64_t(last / 64);
     const std::uint64_t from = all << (first % 64), to = all >> (63 - last % 64);
     Bits bits;
     for (int v = 0; v < kVectors; ++v) {
-      const Words word = Words{0, 1, 2, 3} + std::uint64_t(4 * v);
+      const SignedWords word = SignedWords{0, 1, 2, 3} + std::int64_t(4 * v);
       bits.at[v] = (Words(word > low) | (Words(word == low) & from)) &
                    (Words(word < high) | (Words(word == high) & to));
     }
@@ -87,7 +90,9 @@ struct Bits {
   ATLAS_INLINE bool none() const {
     Words any = at[0];
     for (int v = 1; v < kVectors; ++v) any |= at[v];
-    return (any[0] | any[1] | any[2] | any[3]) == 0;
+    const HalfWords half =
+        __builtin_shufflevector(any, any, 0, 1) | __builtin_shufflevector(any, any, 2, 3);
+    return (half[0] | half[1]) == 0;
   }
 
   // Returns the first bit that is set. There must be one.
@@ -146,31 +151,61 @@ class Levels {
 }  // namespace
 
 struct BitPage::ShortRows {
-  // Finds the leftmost place with the foot in row window.y0.
+  struct Sought {
+    const MaskTests& tests;
+    const Window& window;
+    RecentProbes& recent;
+  };
+
+  // The places that are left for a mask whose foot is in row window.y0.
   template <int kVectors>
-  ATLAS_INLINE static bool find_in(BitPage& page, const MaskTests& tests, Window window,
-                                   Place& place) {
-    constexpr std::size_t kStride = 4 * kVectors;
-    const std::int32_t y = window.y0, rows = page.rows_ - y;
-    const std::uint64_t* foot = page.row(0, y);
-    const auto levels = static_cast<std::size_t>(page.levels_);
-    const auto span = static_cast<std::uint64_t>(window.x1 / 64 + 1 - window.x0 / 64);
-    auto left = Bits<kVectors>::range(window.x0, window.x1);
+  struct Row {
+    const std::uint64_t* foot;
+    std::size_t levels;
+    std::int32_t rows;  // that exist from the foot on; those above are free
+    Bits<kVectors> left;
     std::uint64_t tested = 0;
-    bool found = true;
-    for (const Probe& p : tests.probes) {
-      if (p.row >= rows) continue;
+
+    ATLAS_INLINE Row(const BitPage& page, const Window& window)
+        : foot(page.row(0, window.y0)),
+          levels(static_cast<std::size_t>(page.levels_)),
+          rows(page.rows_ - window.y0),
+          left(Bits<kVectors>::range(static_cast<std::uint32_t>(window.x0),
+                                     static_cast<std::uint32_t>(window.x1))) {}
+
+    // Makes a probe. Returns whether any place is left.
+    ATLAS_INLINE bool left_by(const Probe& p) {
+      if (p.row >= rows) return true;
       const std::size_t row = std::size_t(p.row) * levels + p.level;
       // Words beyond the row's end are read, but no candidate reaches them.
-      left.narrow(foot + row * kStride + p.offset / 64, p.offset % 64);
+      left.narrow(foot + row * (4 * kVectors) + p.offset / 64, p.offset % 64);
       ++tested;
-      if (left.none()) {
-        found = false;
-        break;
-      }
+      return !left.none();
     }
-    page.work_ += tested * span;
-    if (found) place = {left.first(), y};
+  };
+
+  // Finds the leftmost place with the foot in row window.y0.
+  template <int kVectors>
+  ATLAS_INLINE static bool find_in(BitPage& page, const Sought& sought, Place& place) {
+    const auto& [tests, window, recent] = sought;
+    // What a call takes beside its probes, in probes.
+    constexpr std::uint64_t kCall = 4;
+    Row<kVectors> row(page, window);
+    bool found = true;
+    for (std::size_t k = 0; k < recent.size() && found; ++k) {
+      found = row.left_by(tests.probes[recent[k]]);
+      if (!found) recent.again(k);
+    }
+    const Probe* first = tests.probes.data();
+    const Probe* end = first + tests.probes.size();
+    for (const Probe* p = first; p != end && found; ++p) {
+      found = row.left_by(*p);
+      if (!found) recent.add(static_cast<std::size_t>(p - first));
+    }
+    const auto span =
+        static_cast<std::uint64_t>(window.x1) / 64 + 1 - static_cast<std::uint64_t>(window.x0) / 64;
+    page.work_ += (row.tested + kCall) * span;
+    if (found) place = {row.left.first(), window.y0};
     return found;
   }
 
@@ -181,14 +216,12 @@ struct BitPage::ShortRows {
 
   // The same functions compiled for processors with and without wide vectors.
   template <int kVectors>
-  static bool find_narrow(BitPage& page, const MaskTests& tests, const Window& window,
-                          Place& place) {
-    return find_in<kVectors>(page, tests, window, place);
+  static bool find_narrow(BitPage& page, const Sought& sought, Place& place) {
+    return find_in<kVectors>(page, sought, place);
   }
   template <int kVectors>
-  ATLAS_WIDE static bool find_wide(BitPage& page, const MaskTests& tests, const Window& window,
-                                   Place& place) {
-    return find_in<kVectors>(page, tests, window, place);
+  ATLAS_WIDE static bool find_wide(BitPage& page, const Sought& sought, Place& place) {
+    return find_in<kVectors>(page, sought, place);
   }
   template <int kVectors>
   static void rebuild_narrow(BitPage& page, std::int32_t y) {
@@ -200,9 +233,8 @@ struct BitPage::ShortRows {
   }
 
   template <int kVectors>
-  static bool find(BitPage& page, const MaskTests& tests, const Window& window, Place& place) {
-    return (has_wide_vectors ? find_wide<kVectors> : find_narrow<kVectors>)(page, tests, window,
-                                                                            place);
+  static bool find(BitPage& page, const Sought& sought, Place& place) {
+    return (has_wide_vectors ? find_wide<kVectors> : find_narrow<kVectors>)(page, sought, place);
   }
   template <int kVectors>
   static void rebuild(BitPage& page, std::int32_t y) {
@@ -210,10 +242,10 @@ struct BitPage::ShortRows {
   }
 };
 
-bool BitPage::find_in_short_row(const MaskTests& tests, Window window, std::int32_t y,
+bool BitPage::find_in_short_row(const MaskTests& tests, const Window& window, RecentProbes& recent,
                                 Place& place) {
-  window.y0 = y;
-  return (words_ == 4 ? ShortRows::find<1> : ShortRows::find<2>)(*this, tests, window, place);
+  const ShortRows::Sought sought{tests, window, recent};
+  return (words_ == 4 ? ShortRows::find<1> : ShortRows::find<2>)(*this, sought, place);
 }
 
 void BitPage::rebuild_short_row(std::int32_t y) {

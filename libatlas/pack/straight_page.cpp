@@ -126,7 +126,7 @@ class StraightPage {
   }
 
   PressedPage run() {
-    PressedPage best = begun_page(options_);
+    PressedPage best = begun_page(options_, 1);
     const double begun = wall_seconds();
     while (!context_.cancelled()) {
       const std::uint32_t round = best.draws++;

@@ -97,7 +97,7 @@ Status no_room(const ChartSet& charts, const LayoutOptions& options) {
 
 // Limits of what PackPreset::best tries: the number of layouts, and the number of charts in all of
 // them together. This takes some seconds.
-constexpr std::uint64_t kBestLayouts = 8000, kBestCharts = 75000;
+constexpr std::uint64_t kBestLayouts = 8000, kBestCharts = 36000;
 
 // The problem for the packer, by boxes or by outlines as options.outlines says.
 struct Problem {
@@ -144,6 +144,7 @@ struct Problem {
 PageLayout layout_of(FitResult fitted, const Problem& problem) {
   const LayoutOptions& options = problem.options;
   PageLayout layout;
+  layout.outlines = options.outlines && !fitted.boxes;
   layout.scale = fitted.scale;
   layout.pages = std::move(fitted.pages);
   layout.utilization = fitted.utilization;
@@ -153,17 +154,16 @@ PageLayout layout_of(FitResult fitted, const Problem& problem) {
     const FitPlacement& from = fitted.placements[c];
     const FitItem& item = problem.items[c];
     ChartPlacement& to = layout.placements[c];
-    to = options.outlines ? outlined(from, options) : boxed(from, options);
+    to = layout.outlines ? outlined(from, options) : boxed(from, options);
     to.chart = std::uint32_t(c);
     to.page = std::int32_t(from.page);
     const Vec2d wanted = problem.texels_per_unit[c];
     to.texels_per_unit =
-        options.outlines
+        layout.outlines
             ? Vec2d{wanted.x * from.scale, wanted.y * from.scale}
             : Vec2d{scaled_density(wanted.x, item.width, layout.scale, options.minimum_side),
                     scaled_density(wanted.y, item.height, layout.scale, options.minimum_side)};
   }
-  layout.outlines = options.outlines;
   layout.layouts = fitted.layouts;
   layout.uv_utilization = uv_utilization(problem.charts, layout);
   const double texels = full_texels(problem.charts, problem.texels_per_unit);
@@ -171,46 +171,18 @@ PageLayout layout_of(FitResult fitted, const Problem& problem) {
   return layout;
 }
 
-// Packs in one way, by boxes or by outlines as options.outlines says.
-Result<PageLayout> lay_out(const ChartSet& charts, std::span<const Vec2d> texels_per_unit,
-                           const LayoutOptions& options, const Context& context) {
-  const Problem problem({charts, texels_per_unit}, options);
-  Result<FitResult> fitted = fit_pages(problem.items, problem.fit, context);
+// Packs by boxes, and by outlines if options.outlines allows them and they may win.
+Result<PageLayout> lay_out(const WantedCharts& wanted, const LayoutOptions& options,
+                           const Context& context) {
+  const Problem problem(wanted, options);
+  Result<FitResult> fitted = options.outlines
+                                 ? fit_boxes_or_outlines(problem.items, problem.fit, context)
+                                 : fit_pages(problem.items, problem.fit, context);
   if (!fitted.ok()) {
     const bool full = fitted.status().code() == ErrorCode::no_solution;
-    return full ? no_room(charts, options) : fitted.status();
+    return full ? no_room(wanted.charts, options) : fitted.status();
   }
   return layout_of(std::move(*fitted), problem);
-}
-
-std::int64_t page_texels(const PageLayout& layout) {
-  std::int64_t texels = 0;
-  for (const Extent& page : layout.pages) texels += page.area();
-  return texels;
-}
-
-// Returns whether layout a is better than b. More texels for the charts are better, and for the
-// same texels, smaller pages are. With free_aspect, the fuller page is better.
-bool better(const PageLayout& a, const PageLayout& b, const LayoutOptions& options) {
-  if (options.free_aspect) return a.uv_utilization > b.uv_utilization;
-  if (a.scale != b.scale) return a.scale > b.scale;
-  return page_texels(a) < page_texels(b);
-}
-
-// If boxes or pages are filled to a larger share than this, outlines have nothing to win.
-constexpr double kFull = 0.88;
-
-// Returns whether packing by outlines may win. It does not if there are many charts that nearly
-// fill their boxes, because packing by boxes then leaves less of a page empty.
-bool worth_outlining(const ChartSet& charts, std::span<const Vec2d> texels_per_unit) {
-  constexpr std::size_t kMany = 1000;
-  if (charts.charts.size() < kMany) return true;
-  double box_area = 0;
-  for (std::size_t c = 0; c < charts.charts.size(); ++c) {
-    const Vec2d size = charts.charts[c].size, density = texels_per_unit[c];
-    box_area += size.x * size.y * density.x * density.y;
-  }
-  return full_texels(charts, texels_per_unit) < kFull * box_area;
 }
 
 // A page for uvs alone is packed again with PackPreset::best if its charts, with their small holes
@@ -252,28 +224,13 @@ bool worth_more_work(const ChartSet& charts, const PageLayout& layout,
 }
 
 // Packs by boxes, by outlines if these may win, and with more effort if that may win much.
-Result<PageLayout> lay_out_better(const ChartSet& charts, std::span<const Vec2d> texels_per_unit,
-                                  const LayoutOptions& options, const Context& context) {
-  LayoutOptions boxes = options;
-  boxes.outlines = false;
-  const auto part = [&](double from, double to) {
-    return part_of_stage(context, "pack", from, to);
-  };
-  Result<PageLayout> boxed = lay_out(charts, texels_per_unit, boxes, part(0, 0.2));
-  const auto full = [&] {  // false if one more page could make all charts larger
-    return boxed->uv_utilization > kFull &&
-           (boxed->pages.size() >= options.pages || boxed->scale >= 1);
-  };
-  if (!options.outlines || (boxed.ok() && (full() || !worth_outlining(charts, texels_per_unit))))
-    return boxed;
-  Result<PageLayout> best = lay_out(charts, texels_per_unit, options, part(0.2, 0.6));
-  if (boxed.ok() && best.ok()) {
-    boxed->with_lost_room = best->with_lost_room;
-    boxed->layouts = best->layouts;
-  }
-  if (!best.ok() || (boxed.ok() && !better(*best, *boxed, options))) best = std::move(boxed);
+Result<PageLayout> lay_out_better(const WantedCharts& wanted, const LayoutOptions& options,
+                                  const Context& context) {
+  constexpr double kFirst = 0.6;  // share of the progress
+  Result<PageLayout> best = lay_out(wanted, options, part_of_stage(context, "pack", 0, kFirst));
   if (!best.ok() || !options.more_work) return best;
-  return work_on_layout({charts, texels_per_unit}, options, std::move(*best), part(0.6, 1));
+  return work_on_layout(wanted, options, std::move(*best),
+                        part_of_stage(context, "pack", kFirst, 1));
 }
 
 }  // namespace
@@ -296,7 +253,7 @@ Result<PageLayout> lay_out_pages(const ChartSet& charts, std::span<const Vec2d> 
                     fmt::format("chart {}: texel density {} x {} (must be above 0 and finite)", c,
                                 density.x, density.y));
   }
-  Result<PageLayout> layout = lay_out_better(charts, texels_per_unit, options, context);
+  Result<PageLayout> layout = lay_out_better({charts, texels_per_unit}, options, context);
   if (context.cancelled()) return Status::cancelled();
   context.report("pack", 1);
   return layout;
@@ -327,10 +284,14 @@ Result<PageLayout> work_on_layout(const WantedCharts& wanted, const LayoutOption
   harder.preset = PackPreset::best;
   harder.tried = standard.layouts;
   harder.wanted_fill = std::max(options.wanted_fill, standard.uv_utilization);
-  Result<PageLayout> more = lay_out(wanted.charts, wanted.texels_per_unit, harder, context);
+  const Problem problem(wanted, harder);
+  Result<FitResult> more = fit_pages(problem.items, problem.fit, context);
   if (context.cancelled()) return Status::cancelled();
   const double before = standard.uv_utilization;
-  if (more.ok() && better(*more, standard, options)) standard = std::move(*more);
+  if (more.ok()) {
+    PageLayout fuller = layout_of(std::move(*more), problem);
+    if (fuller.uv_utilization > before) standard = std::move(fuller);
+  }
   standard.won = before > 0 ? standard.uv_utilization / before : 1;
   return standard;
 }

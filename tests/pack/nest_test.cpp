@@ -41,6 +41,30 @@ void disturb(test::Noise& noise, std::span<const Piece> pieces, NestPlan& plan) 
     plan.direction[i] = noise.in(-1, int(pieces[i].masks.size()) - 1);
 }
 
+// Searches can be compared half-way: one that was interrupted ends as one that was not.
+TEST(NestSearch, InterruptionsChangeNothing) {
+  test::Noise noise{7};
+  const std::vector<Piece> pieces = blob_pieces(noise, 9, 8);
+  NestSearchOptions options;
+  options.width = 48;
+  options.layouts = 60;
+  const NestPlan plan = plan_by_size(pieces);
+  const NestSearchResult whole = search_nest(pieces, plan, options, {});
+  NestSearch search(pieces, plan, options);
+  std::uint64_t before = 0;
+  for (const double share : {0.0, 0.25, 0.5, 1.0}) {
+    const NestSearchResult& part = search.run(share, {});
+    EXPECT_GE(double(part.layouts), std::max(1.0, share * 60));
+    EXPECT_GT(part.layouts, before);
+    before = part.layouts;
+  }
+  const NestSearchResult& parts = search.run(1, {});
+  EXPECT_EQ(parts.layouts, whole.layouts);
+  EXPECT_EQ(parts.work, whole.work);
+  EXPECT_EQ(parts.nest.used_height, whole.nest.used_height);
+  EXPECT_EQ(parts.nest.places, whole.nest.places);
+}
+
 // A single piece has only one order, so there is nothing left to search for.
 TEST(NestSearch, APieceAloneIsPutDownOnceInEachDirection) {
   const ChartOutline bar = outline_of({std::vector<Vec2d>{{0, 0}, {30, 0}, {30, 5}}, {}});

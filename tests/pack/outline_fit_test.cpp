@@ -1,6 +1,7 @@
 // How fine the cells are when many charts are packed on them.
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <vector>
 
 #include "libatlas/pack/fit.h"
@@ -12,6 +13,93 @@ namespace {
 
 // Coarse cells, as the number of needles alone would suggest, lose two percent of the page around
 // them.
+// The three draws of a page of twenty shapes that stays poorly filled took 1920 layouts before the
+// worse of the starts were given up on the way.
+TEST(OutlineFit, PoorPagesAreDrawnWithFewLayouts) {
+  std::vector<std::vector<Vec2d>> shapes;
+  test::Noise noise{3};
+  for (int k = 0; k < 20; ++k) {
+    const double a = 20 + 60 * noise.unit(), b = 8;  // an L of two bars
+    shapes.push_back({{0, 0},
+                      {a, 0},
+                      {a, b},
+                      {0, 0},
+                      {a, b},
+                      {0, b},
+                      {0, 0},
+                      {b, 0},
+                      {b - 0.5 * a, a},
+                      {0, 0},
+                      {b - 0.5 * a, a},
+                      {-0.5 * a, a}});
+  }
+  const test::ChartItems charts(std::move(shapes));
+  FitOptions o;
+  o.page_size = 512;
+  o.alignment = 1;
+  o.minimum_side = 0;
+  o.max_scale = 100;
+  o.shapes = charts.shapes;
+  o.free_aspect = true;
+  const Result<FitResult> fit = fit_pages(charts.items, o, {});
+  ASSERT_TRUE(fit.ok());
+  EXPECT_LT(fit->utilization, 0.7);
+  EXPECT_LE(fit->layouts, 1400u);
+  EXPECT_EQ(test::check_outlines(test::placed_shapes(charts, *fit), fit->pages, o.padding), "");
+}
+
+// `best` on several tiny pages once tried layouts by the million.
+TEST(OutlineFit, TinyPagesTakeABoundedNumberOfLayouts) {
+  std::vector<std::vector<Vec2d>> shapes;
+  test::Noise noise{5};
+  for (int k = 0; k < 12; ++k) shapes.push_back(test::blob(noise, 20, 16));
+  const test::ChartItems charts(std::move(shapes));
+  FitOptions o;
+  o.pages = 4;
+  o.page_size = 64;
+  o.alignment = 1;
+  o.padding = 1;
+  o.minimum_side = 0;
+  o.max_scale = 100;
+  o.shapes = charts.shapes;
+  o.preset = PackPreset::best;
+  const Result<FitResult> fit = fit_pages(charts.items, o, {});
+  ASSERT_TRUE(fit.ok());
+  EXPECT_LE(fit->layouts, std::uint64_t{2} * 3001 * o.pages * fit->packings);
+  EXPECT_LE(fit->layouts, 300'000u);
+}
+
+// Equal discs lie more densely in rows of boxes, and then have the places of outlines as well.
+TEST(OutlineFit, BoxesAreTakenWhereTheyFillMore) {
+  std::vector<std::vector<Vec2d>> shapes;
+  for (int k = 0; k < 9; ++k) {
+    std::vector<Vec2d> disc;
+    for (int i = 0; i < 48; ++i) {
+      const double a = 2 * 3.14159265358979 * i / 48, b = 2 * 3.14159265358979 * (i + 1) / 48;
+      disc.insert(disc.end(), {{5, 7},
+                               {5 + 50 * std::cos(a), 7 + 50 * std::sin(a)},
+                               {5 + 50 * std::cos(b), 7 + 50 * std::sin(b)}});
+    }
+    shapes.push_back(std::move(disc));
+  }
+  const test::ChartItems charts(std::move(shapes));
+  FitOptions o;
+  o.page_size = 512;
+  o.power_of_two = false;
+  o.alignment = 1;
+  o.minimum_side = 0;
+  o.max_scale = 100;
+  o.shapes = charts.shapes;
+  const Result<FitResult> outlines = fit_pages(charts.items, o, {});
+  const Result<FitResult> better = fit_boxes_or_outlines(charts.items, o, {});
+  ASSERT_TRUE(outlines.ok() && better.ok());
+  EXPECT_TRUE(better->boxes);
+  EXPECT_GT(better->scale, 1.05 * outlines->scale);
+  EXPECT_GT(better->filled, 0.74);
+  EXPECT_EQ(test::check_outlines(test::placed_shapes(charts, *better), better->pages, o.padding),
+            "");
+}
+
 TEST(OutlineFit, NeedlesLieOnFineCells) {
   test::Noise noise{8};
   std::vector<std::vector<Vec2d>> needles;

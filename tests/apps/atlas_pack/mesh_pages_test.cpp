@@ -149,7 +149,8 @@ TEST_F(PackedPages, CroppingLeavesChartsAsLargeAsTheyAre) {
   };
   write_triangles();
   EXPECT_EQ(lengths("--crop --pages 3"), lengths("--pages 3"));
-  // Three squares leave a quarter of a square page free, and less of a page of another shape.
+  // Three squares leave a quarter of a square page free. Of the cropped pages that are found, the
+  // one of their boxes is the fullest, by a few thousandths of a percent.
   std::string squares;
   for (int k = 0; k < 3; ++k) {
     for (const auto& [x, y] : {std::pair(0, 0), {1, 0}, {1, 1}, {0, 1}})
@@ -160,7 +161,7 @@ TEST_F(PackedPages, CroppingLeavesChartsAsLargeAsTheyAre) {
   EXPECT_NEAR(*lengths("").begin(), 1280, 5);
   EXPECT_EQ(lengths("--crop --pot"), lengths(""));
   EXPECT_EQ(lengths("--crop --square"), lengths(""));
-  EXPECT_LT(*lengths("--crop").rbegin(), 1270);
+  EXPECT_NEAR(*lengths("--crop").rbegin(), 1280, 5);
 }
 
 // The border is kept free on all sides, and the page is the smallest power of two around it.
@@ -201,6 +202,35 @@ TEST_F(PackedPages, SquarePagesAreFilledAsSquares) {
   EXPECT_GT(length("--square --crop"), 1.2 * 256);
   EXPECT_GT(length(""), 1.2 * 256);
   EXPECT_NEAR(length("--square --crop --rotations 1"), 256, 1);
+}
+
+// Three rows of three discs fill a square to 0.785 without gutters, if they lie in the boxes of a
+// grid. A search over outlines finds less than 0.7.
+TEST_F(PackedPages, EqualDiscsLieInRows) {
+  constexpr int kSides = 48;
+  std::string text;
+  for (int k = 0; k < 9; ++k) {
+    for (int i = 0; i < kSides; ++i) {
+      const double a = 2 * std::numbers::pi * i / kSides;
+      text += fmt::format("v {0} {1} 0\nvt {0} {1}\n", 3 * k + std::cos(a), std::sin(a));
+    }
+    for (int i = 2; i < kSides; ++i) {
+      const int first = kSides * k + 1;
+      text += fmt::format("f {0}/{0} {1}/{1} {2}/{2}\n", first, first + i - 1, first + i);
+    }
+  }
+  write("m.obj", text);
+  const RunResult r = run("mesh m.obj -o out.obj --json --padding 2 --page 512");
+  ASSERT_EQ(r.exit_code, 0) << r.output;
+  const std::size_t at = r.output.find("\"utilization\":");
+  ASSERT_NE(at, std::string::npos);
+  EXPECT_GT(std::stod(r.output.substr(at + 14)), 0.75);
+  const auto pages = pages_of(read("out.obj"));
+  ASSERT_EQ(pages.size(), 1u);
+  EXPECT_GE(pages[0].low.x, 0.99);
+  EXPECT_GE(pages[0].low.y, 0.99);
+  EXPECT_LE(pages[0].high.x, 511.01);
+  EXPECT_LE(pages[0].high.y, 511.01);
 }
 
 // Overlaps are told; a mesh without them is packed without a word.
