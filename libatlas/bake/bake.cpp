@@ -287,7 +287,8 @@ Result<BakedPage> bake_page(const ChartLight& light, std::span<const ChartPlacem
       const std::lock_guard lock(counting);
       page.triangles += light.charts.charts[placements[i].chart].triangle_count;
       page.covered_texels += covered;
-      context.report("bake", static_cast<double>(++done) / static_cast<double>(placements.size()));
+      context.report("baking",
+                     static_cast<double>(++done) / static_cast<double>(placements.size()));
     }
   });
   if (context.cancelled()) return Status::cancelled();

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "libatlas/charts/cells/grains.h"
+#include "libatlas/core/degrees.h"
 #include "libatlas/core/glm_bridge.h"
 #include "libatlas/param/distortion.h"
 
@@ -217,7 +218,7 @@ bool ChartCopier::copy(const FlatChart& chart, std::uint32_t from, std::uint32_t
   }
   out.cone = normal_cone(topology.normals, out.triangles);
   out.distortion = measure_distortion({positions, out.corners, density}, out.uvs);
-  const double cone = input_.options.cone_degrees * M_PI / 180;
+  const double cone = radians(input_.options.cone_degrees);
   return out.distortion.flips == 0 && out.distortion.degenerate == 0 &&
          (chart.triangles.size() == 1 ||
           out.distortion.stretch_999 <= input_.options.max_stretch) &&

@@ -9,6 +9,7 @@
 #include "libatlas/charts/flattening/uv_folds.h"
 #include "libatlas/charts/geometry/cone.h"
 #include "libatlas/charts/mesh/local_chart.h"
+#include "libatlas/core/degrees.h"
 #include "libatlas/core/glm_bridge.h"
 #include "libatlas/core/parallel.h"
 #include "libatlas/param/injectivity.h"
@@ -42,7 +43,7 @@ class GivenChart {
     const LocalMesh mesh = chart_.mesh();
     if (!check_injectivity(mesh, uvs_).injective) return Verdict::bad;
     const NormalCone cone = normal_cone(input_.topology.normals, triangles);
-    const double limit = input_.options.cone_degrees * M_PI / 180;
+    const double limit = radians(input_.options.cone_degrees);
     if (limit > 0 && triangles.size() > 1 && cone.angle > limit * (1 + 1e-9)) return Verdict::bad;
     place(std::sqrt(surface / uv_area), flat);
     const InjectivityOptions safe{.clearance = kMinAltitude * std::sqrt(surface)};

@@ -15,6 +15,7 @@
 #include "libatlas/charts/parts.h"
 #include "libatlas/charts/totals.h"
 #include "libatlas/core/clock.h"
+#include "libatlas/core/degrees.h"
 #include "libatlas/core/glm_bridge.h"
 #include "libatlas/core/parallel.h"
 #include "libatlas/core/progress.h"
@@ -117,7 +118,7 @@ class Assembler {
     chart.material = material(flat.triangles.front());
     chart.size = {flat.size.x * unscale_, flat.size.y * unscale_};
     chart.axis = flat.cone.axis;
-    chart.cone_degrees = flat.cone.angle * 180 / M_PI;
+    chart.cone_degrees = degrees(flat.cone.angle);
     chart.planar_projection = flat.planar;
     chart.kept = flat.kept;
     chart.distortion = flat.distortion;

@@ -12,6 +12,7 @@
 #include "libatlas/charts/seams/slit_paths.h"
 #include "libatlas/charts/seams/straighten.h"
 #include "libatlas/core/clock.h"
+#include "libatlas/core/degrees.h"
 #include "libatlas/core/parallel.h"
 
 namespace atlas {
@@ -113,7 +114,7 @@ class Segmenter {
         options_(options),
         first_seed_(first_seed),
         context_(context),
-        cone_(options.cone_degrees * M_PI / 180) {}
+        cone_(radians(options.cone_degrees)) {}
 
   Segmentation run() {
     const std::size_t n = topology_.triangle_count();

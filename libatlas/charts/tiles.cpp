@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <numeric>
 #include <utility>
 
@@ -94,7 +95,7 @@ class Tiler {
     param::HalfEdges half_edges;
     half_edges.build(piece.corners, piece.uvs.size());
     LineCutter cutter(piece, half_edges, all);
-    cutter.face(box.u.length() >= box.v.length() ? 0 : M_PI / 2);
+    cutter.face(box.u.length() >= box.v.length() ? 0 : std::numbers::pi / 2);
     const Extent1& along = box.longer();
     const double shares = std::max(2.0, std::ceil(along.length() / limit_));
     const double share = along.length() / shares, line = along.low + share * std::ceil(shares / 2);

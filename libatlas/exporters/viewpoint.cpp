@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
 #include <vector>
 
 #include "libatlas/core/glm_bridge.h"
@@ -11,7 +12,6 @@ namespace atlas {
 namespace {
 
 constexpr double kEyeMetres = 1.6, kHeadroomMetres = 1.9;
-constexpr double kPi = 3.14159265358979323846;
 constexpr double kFov = 1.0;                  // radians
 constexpr std::size_t kMaxCandidates = 1500;  // places tried; each costs about seventy rays
 constexpr int kHeadings = 24;                 // horizontal directions tried
@@ -177,7 +177,7 @@ std::vector<glm::dvec3> sphere(int count) {
   std::vector<glm::dvec3> result;
   for (int i = 0; i < count; ++i) {
     const double z = 1 - (2 * i + 1.0) / count, r = std::sqrt(1 - z * z);
-    const double angle = kPi * (3 - std::sqrt(5.0)) * i;
+    const double angle = std::numbers::pi * (3 - std::sqrt(5.0)) * i;
     result.emplace_back(r * std::cos(angle), r * std::sin(angle), z);
   }
   return result;
@@ -204,7 +204,7 @@ Judged judge(const Grid& grid, const Eye& candidate, const std::vector<glm::dvec
   std::array<double, kHeadings> free{};
   double nearest = INFINITY, mean = 0;
   for (int i = 0; i < kHeadings; ++i) {
-    const double angle = 2 * kPi * i / kHeadings;
+    const double angle = 2 * std::numbers::pi * i / kHeadings;
     const auto ray = grid.cast(eye, {std::cos(angle), std::sin(angle), 0});
     free[i] = ray.hit == Grid::Hit::front ? ray.distance : kBackFace * ray.distance;
     nearest = std::min(nearest, ray.distance);
@@ -220,7 +220,7 @@ Judged judge(const Grid& grid, const Eye& candidate, const std::vector<glm::dvec
     const double view = 2 * free[i] + 2 * side;
     if (view <= best) continue;
     best = view;
-    const double angle = 2 * kPi * i / kHeadings;
+    const double angle = 2 * std::numbers::pi * i / kHeadings;
     result.direction = {std::cos(angle), std::sin(angle), 0};
   }
   // A long view counts more than the middle of the room: people stand near a wall to see it all.

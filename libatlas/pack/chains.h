@@ -55,7 +55,7 @@ std::size_t run_chains(std::vector<Chain>& chains, const SearchLimits& limits,
     const double round = wall_seconds() - start - elapsed;
     if (round * 50 < limits.seconds && per_round < 4096) per_round *= 2;
     if (std::isfinite(limits.seconds) && limits.seconds > 0)
-      context.report("pack", std::min(1.0, elapsed / limits.seconds));
+      context.report("packing", std::min(1.0, elapsed / limits.seconds));
   }
   return best;
 }

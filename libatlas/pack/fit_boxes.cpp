@@ -23,7 +23,7 @@ bool search_scale(BoxFit& fit, FitResult& result, BoxLayout& best) {
       best = std::move(layout);
       result.scale = scale;
     }
-    context.report("pack", std::min(1.0, double(result.packings) / options.max_packings));
+    context.report("packing", std::min(1.0, double(result.packings) / options.max_packings));
     return ok;
   };
   if (fit.may_fit(options.max_scale) && attempt(options.max_scale)) return true;

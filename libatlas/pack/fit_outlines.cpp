@@ -26,7 +26,7 @@ bool search_scale(OutlineFit& fit, FitResult& result, OutlineLayout& best) {
     result.trace.emplace_back(scale, ok);
     result.layouts += layout.layouts;
     if (ok && scale > best.scale) best = std::move(layout);
-    context.report("pack", std::min(1.0, double(result.packings) / options.max_packings));
+    context.report("packing", std::min(1.0, double(result.packings) / options.max_packings));
     return ok;
   };
   const double pages = double(options.page_size) * options.page_size * options.pages;

@@ -4,7 +4,7 @@
 #include <utility>
 
 #include "libatlas/core/clock.h"
-#include "libatlas/pack/engines.h"
+#include "libatlas/core/random.h"
 #include "libatlas/pack/nest.h"
 
 namespace atlas::pack {

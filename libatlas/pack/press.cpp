@@ -52,7 +52,7 @@ class Press {
       if (alone()) break;
       if (options_.preset == PackPreset::best) {
         if (!(done < 1)) break;
-        context_.report("pack", done);
+        context_.report("packing", done);
       } else if (!worth_another_draw(best.draws, fill(best), options_.wanted_fill)) {
         break;
       }

@@ -7,7 +7,7 @@
 #include <numbers>
 
 #include "libatlas/core/parallel.h"
-#include "libatlas/pack/engines.h"
+#include "libatlas/core/random.h"
 
 namespace atlas::pack {
 namespace {

@@ -1,6 +1,7 @@
 #include <compare>
 #include <cstdint>
 
+#include "libatlas/core/random.h"
 #include "libatlas/pack/chains.h"
 
 namespace atlas::pack {

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "libatlas/core/random.h"
 #include "libatlas/pack/chains.h"
 #include "libatlas/pack/gap_fill.h"
 #include "libatlas/pack/turned_problem.h"

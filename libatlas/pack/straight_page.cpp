@@ -7,7 +7,7 @@
 
 #include "libatlas/core/clock.h"
 #include "libatlas/core/parallel.h"
-#include "libatlas/pack/engines.h"
+#include "libatlas/core/random.h"
 #include "libatlas/pack/nest.h"
 #include "libatlas/pack/slide.h"
 
@@ -144,7 +144,7 @@ class StraightPage {
       const double done = book_round(options_, wall_seconds() - begun, fill(best), best);
       if (options_.preset != PackPreset::best) break;
       if (!(done < 1) || in_vain(round, before, best)) break;
-      context_.report("pack", done);
+      context_.report("packing", done);
     }
     return best;
   }

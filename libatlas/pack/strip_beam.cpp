@@ -7,7 +7,7 @@
 #include <tuple>
 #include <unordered_set>
 
-#include "libatlas/pack/engines.h"
+#include "libatlas/core/random.h"
 
 namespace atlas::pack {
 namespace {

@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "libatlas/core/random.h"
 #include "libatlas/pack/engines.h"
 #include "libatlas/pack/gap_fill.h"
 

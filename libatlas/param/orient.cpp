@@ -6,6 +6,7 @@
 #include <numbers>
 #include <vector>
 
+#include "libatlas/core/degrees.h"
 #include "libatlas/core/predicates.h"
 #include "libatlas/param/rest_shape.h"
 
@@ -141,7 +142,7 @@ std::vector<BorderEdge> border_directions(std::span<const Vec2d> uvs,
 // narrower windows, so that long straight borders outweigh those that are only nearly straight.
 glm::dvec2 refine_direction(std::span<const BorderEdge> edges, double angle) {
   for (const double window : {0.5, 0.1, 0.02}) {
-    const double limit = std::cos(4 * window * std::numbers::pi / 180);
+    const double limit = std::cos(4 * radians(window));
     const glm::dvec2 middle(std::cos(4 * angle), std::sin(4 * angle));
     double c = 0, s = 0;
     for (const BorderEdge& e : edges) {

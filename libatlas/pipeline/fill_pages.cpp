@@ -129,7 +129,7 @@ class PageFiller {
   // Returns the context for a section of the current part. Each way of cutting is one part of the
   // stage.
   Context part(double from, double to) const {
-    return part_of_stage(context_, "pack", (parts_ + from) / kParts, (parts_ + to) / kParts);
+    return part_of_stage(context_, "packing", (parts_ + from) / kParts, (parts_ + to) / kParts);
   }
 
   std::vector<Vec2d> densities(const ChartSet& charts) const {
@@ -250,9 +250,9 @@ class PageFiller {
 
 Result<PageLayout> fill_pages(const PlainUvs& uvs, const LayoutOptions& options, ChartSet& charts,
                               const Context& context) {
-  const Context stage = part_of_stage(context, "pack");  // an early way may be pressed last
+  const Context stage = part_of_stage(context, "packing");  // an early way may be pressed last
   Result<PageLayout> layout = PageFiller(uvs, options, charts, stage).run(charts);
-  stage.report("pack", 1);
+  stage.report("packing", 1);
   return layout;
 }
 

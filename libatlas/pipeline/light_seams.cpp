@@ -7,6 +7,7 @@
 #include <unordered_map>
 
 #include "libatlas/charts/mesh/weld.h"
+#include "libatlas/core/degrees.h"
 #include "libatlas/core/disjoint_sets.h"
 #include "libatlas/core/glm_bridge.h"
 #include "libatlas/scene/triangle_area.h"
@@ -52,7 +53,7 @@ class LightSeamFinder {
         sampler_(sampler),
         tone_(tone),
         options_(options),
-        least_cosine_(std::cos(options.crease_degrees * M_PI / 180)),
+        least_cosine_(cosine_of(options.crease_degrees)),
         faces_(scene_.positions.size()) {}
 
   LightSeams run(const Context& context) {

@@ -227,10 +227,10 @@ bool worth_more_work(const ChartSet& charts, const PageLayout& layout,
 Result<PageLayout> lay_out_better(const WantedCharts& wanted, const LayoutOptions& options,
                                   const Context& context) {
   constexpr double kFirst = 0.6;  // share of the progress
-  Result<PageLayout> best = lay_out(wanted, options, part_of_stage(context, "pack", 0, kFirst));
+  Result<PageLayout> best = lay_out(wanted, options, part_of_stage(context, "packing", 0, kFirst));
   if (!best.ok() || !options.more_work) return best;
   return work_on_layout(wanted, options, std::move(*best),
-                        part_of_stage(context, "pack", kFirst, 1));
+                        part_of_stage(context, "packing", kFirst, 1));
 }
 
 }  // namespace
@@ -255,7 +255,7 @@ Result<PageLayout> lay_out_pages(const ChartSet& charts, std::span<const Vec2d> 
   }
   Result<PageLayout> layout = lay_out_better({charts, texels_per_unit}, options, context);
   if (context.cancelled()) return Status::cancelled();
-  context.report("pack", 1);
+  context.report("packing", 1);
   return layout;
 }
 

@@ -38,7 +38,7 @@ Result<PagesOfParts> filled_apart(const PlainUvs& uvs, const LayoutOptions& opti
   PagesOfParts pages;
   pages.opened = open_part_gaps({uvs.mesh, max_stretch, texels}, wanted, charts, context).charts;
   Result<PageLayout> layout =
-      fill_pages(uvs, options, charts, part_of_stage(context, "pack", 0, 0.5));
+      fill_pages(uvs, options, charts, part_of_stage(context, "packing", 0, 0.5));
   if (!layout.ok()) return layout.status();
   pages.layout = std::move(*layout);
   pages.left = left_part_gaps(uvs.mesh, charts, pages.layout.placements, context);
@@ -49,7 +49,7 @@ Result<PagesOfParts> filled_apart(const PlainUvs& uvs, const LayoutOptions& opti
   for (double& c : clearance) c *= kSmaller;
   const std::size_t opened = widen_gaps(uvs.mesh, {clearance, max_stretch}, wider, context).charts;
   if (opened == 0) return pages;
-  layout = fill_pages(uvs, options, wider, part_of_stage(context, "pack", 0.5, 1));
+  layout = fill_pages(uvs, options, wider, part_of_stage(context, "packing", 0.5, 1));
   if (context.cancelled()) return Status::cancelled();
   if (!layout.ok()) return pages;
   const GapReport left = left_part_gaps(uvs.mesh, wider, layout->placements, context);
@@ -102,7 +102,7 @@ GapReport left_part_gaps(const MeshView& mesh, const ChartSet& charts,
 Result<PagesOfParts> fill_pages_apart(const PlainUvs& uvs, const LayoutOptions& options,
                                       ChartSet& charts, const Context& context) {
   Result<PagesOfParts> pages = filled_apart(uvs, options, charts, context);
-  context.report("pack", 1);
+  context.report("packing", 1);
   return pages;
 }
 

@@ -7,6 +7,7 @@
 
 #include "libatlas/bake/placement.h"
 #include "libatlas/core/atomic_file.h"
+#include "libatlas/core/degrees.h"
 #include "libatlas/pipeline/bake_pages.h"
 #include "libatlas/scene/triangle_area.h"
 #include "libatlas/texture/luminance.h"
@@ -80,7 +81,7 @@ std::string charts_reason(const ChartOptions& charts) {
         fmt::format("normals within {:g}° of a chart's axis", charts.cone_degrees);
     if (charts.cone_degrees >= 90) return cone;  // a projection may stretch without limit
     return fmt::format("{}: planar stretch at most {:.3f}", cone,
-                       1 / std::cos(charts.cone_degrees * M_PI / 180));
+                       1 / cosine_of(charts.cone_degrees));
   }
   return fmt::format(
       "stretch at most {:g} over 99.9 % of a chart; the solver runs only for charts that a planar "

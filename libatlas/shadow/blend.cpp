@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "libatlas/core/degrees.h"
 #include "libatlas/core/glm_bridge.h"
 
 namespace atlas {
@@ -17,7 +18,7 @@ double angle_between(const Vec3d& a, const Vec3d& b) {
 BlendWeights blend_weights(KeyBlend blend, double t, double angle) {
   t = t > 0 ? std::min(t, 1.0) : 0.0;  // the comparison sends NaN to 0
   const BlendWeights linear{1 - t, t};
-  constexpr double kMaxAngle = kMaxKeyDegrees * 3.14159265358979323846 / 180;
+  constexpr double kMaxAngle = radians(kMaxKeyDegrees);
   const double sine = std::sin(angle);
   if (blend == KeyBlend::linear || !(sine >= kSlerpMinSine) || !(angle <= kMaxAngle * (1 + 1e-12)))
     return linear;

@@ -1,8 +1,8 @@
 #include "libatlas/shadow/schedule.h"
 
 #include <algorithm>
-#include <numbers>
 
+#include "libatlas/core/degrees.h"
 #include "libatlas/shadow/blend.h"
 
 namespace atlas {
@@ -17,7 +17,7 @@ bool same(const Vec3d& a, const Vec3d& b) {
 }
 
 double degrees_between(const Vec3d& a, const Vec3d& b) {
-  return angle_between(a, b) * 180 / std::numbers::pi;
+  return degrees(angle_between(a, b));
 }
 
 }  // namespace

@@ -261,8 +261,8 @@ Result<TextureResult> size_chart_textures(const ChartLight& light, const Texture
           size_chart({light, options, rooms}, static_cast<std::uint32_t>(i), result.charts[i]);
       const std::lock_guard lock(reporting);
       triangles_done += light.charts.charts[i].triangle_count;
-      context.report("textures", static_cast<double>(triangles_done) /
-                                     static_cast<double>(light.charts.chart_triangles.size()));
+      context.report("downsizing", static_cast<double>(triangles_done) /
+                                       static_cast<double>(light.charts.chart_triangles.size()));
     }
   });
   if (context.cancelled()) return Status::cancelled();

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <glm/geometric.hpp>
+#include <numbers>
 #include <optional>
 
 #include "libatlas/uvs/thin_uvs.h"
@@ -182,8 +183,8 @@ class SpeckSpreader {
       // direction that the border comes from to the direction in which it goes on.
       const bool closed = is_member(c, c.rim.front());
       const double begin = angle_of(c.rim.front());
-      double span = closed ? 2 * M_PI : angle_of(c.rim.back()) - begin;
-      if (span <= 0) span += 2 * M_PI;
+      double span = closed ? 2 * std::numbers::pi : angle_of(c.rim.back()) - begin;
+      if (span <= 0) span += 2 * std::numbers::pi;
       for (std::size_t i = closed ? 0 : 1; i + 1 < c.rim.size(); ++i) {
         const std::uint32_t member = place_[c.rim[i]];
         p[member] = on_circle(begin + span * double(i) / double(c.rim.size() - 1));

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 
+#include "libatlas/core/degrees.h"
 #include "libatlas/core/glm_bridge.h"
 #include "libatlas/view/context.h"
 #include "libatlas/view/renderer_impl.h"
@@ -271,7 +272,7 @@ Result<FrameStats> Renderer::Impl::draw(const Camera& camera, const FrameLight& 
     plan = schedule->next(light.direction, light.ahead);
     stats.refreshed = plan.refreshed;
     stats.t = plan.t;
-    stats.key_degrees = angle_between(plan.from_direction, plan.to_direction) * 57.29577951308232;
+    stats.key_degrees = degrees(angle_between(plan.from_direction, plan.to_direction));
     if (Status s = draw_shadow_maps(camera, plan, stats); !s.ok()) {
       schedule->invalidate();  // the schedule assumes that the maps were drawn
       return s;

@@ -4,12 +4,12 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <numbers>
 #include <numeric>
 #include <span>
 #include <tuple>
 
 #include "libatlas/core/counting_sort.h"
+#include "libatlas/core/degrees.h"
 #include "libatlas/core/first_index.h"
 #include "libatlas/core/glm_bridge.h"
 #include "libatlas/scene/check_scene.h"
@@ -117,7 +117,7 @@ class Builder {
         welded_(weld(scene.positions)),
         corners_at_(corners_by_vertex(welded_, scene.indices)),
         faces_(face_normals(scene)),
-        cosine_(float(std::cos(options.crease_degrees * std::numbers::pi / 180))),
+        cosine_(float(cosine_of(options.crease_degrees))),
         first_(scene.indices.size()) {
     textured_ = scene.textured() && !scene.texcoord_indices.empty();
     emits_ = std::any_of(scene.materials.begin(), scene.materials.end(),

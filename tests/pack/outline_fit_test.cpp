@@ -100,6 +100,20 @@ TEST(OutlineFit, BoxesAreTakenWhereTheyFillMore) {
             "");
 }
 
+// Boxes that fill their page leave outlines nothing to win, but a wrong shape is still told.
+TEST(OutlineFit, WrongShapesAreToldWhereBoxesWouldDo) {
+  const std::vector<Vec2d> box = test::box(60, 60);
+  const std::vector<std::uint32_t> beyond{0, 1, 600'000'000};
+  const std::vector<FitItem> items{{60, 60}};
+  FitOptions o;
+  o.page_size = 64;
+  const std::vector<ChartShape> right{{box, {}}}, wrong{{box, beyond}};
+  o.shapes = right;
+  EXPECT_TRUE(fit_boxes_or_outlines(items, o, {}).ok());
+  o.shapes = wrong;
+  EXPECT_EQ(fit_boxes_or_outlines(items, o, {}).status().code(), ErrorCode::bad_input);
+}
+
 TEST(OutlineFit, NeedlesLieOnFineCells) {
   test::Noise noise{8};
   std::vector<std::vector<Vec2d>> needles;

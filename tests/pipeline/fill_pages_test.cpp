@@ -120,7 +120,7 @@ Packed packed(const Shape& shape) {
   Packed out;
   Context context;
   context.progress = [&](std::string_view stage, double done) {
-    if (stage == "pack" && done < 1) out.last = std::max(out.last, done);
+    if (stage == "packing" && done < 1) out.last = std::max(out.last, done);
   };
   auto mesh = unwrap_mesh(view_of(shape), {.page_size = 512, .square = true}, context);
   EXPECT_TRUE(mesh.ok()) << mesh.status().message();

@@ -254,7 +254,7 @@ TEST(Unwrap, CancelledAfterPackingGivesNoMesh) {
   Context context;
   context.cancel = &cancel;
   context.progress = [&](std::string_view stage, double fraction) {
-    if (stage == "pack" && fraction == 1) cancel = true;
+    if (stage == "packing" && fraction == 1) cancel = true;
   };
   const auto mesh = unwrap_mesh(view_of(ring.scene), {.page_size = 64}, context);
   EXPECT_EQ(mesh.status().code(), ErrorCode::cancelled);

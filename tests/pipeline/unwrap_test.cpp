@@ -309,7 +309,7 @@ TEST(Unwrap, ProgressEndsAtOneWithPartsKeptApart) {
   Context context;
   double fraction = 0;
   context.progress = [&](std::string_view stage, double f) {
-    if (stage != "pack") return;
+    if (stage != "packing") return;
     EXPECT_GE(f, fraction);
     fraction = f;
   };

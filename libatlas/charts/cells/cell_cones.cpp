@@ -4,6 +4,7 @@
 
 #include "libatlas/charts/cells/cells.h"
 #include "libatlas/charts/geometry/tangents.h"
+#include "libatlas/core/degrees.h"
 #include "libatlas/core/glm_bridge.h"
 
 namespace atlas {
@@ -14,7 +15,7 @@ namespace {
 constexpr double kMargin = 1e-5;
 
 // Wider cones are not projected to the tangent plane, where their normals would lie too far out.
-constexpr double kHullCone = 80 * M_PI / 180;
+constexpr double kHullCone = radians(80);
 
 struct ProjectedNormal {
   double x, y;

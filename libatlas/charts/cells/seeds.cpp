@@ -9,6 +9,7 @@
 #include "libatlas/charts/cells/cell_distance.h"
 #include "libatlas/charts/cells/ring_queue.h"
 #include "libatlas/charts/cells/tips.h"
+#include "libatlas/core/degrees.h"
 
 namespace atlas {
 namespace {
@@ -223,7 +224,7 @@ class Seeder {
   // its cells unroll however much they are bent. In a corrugated sheet each quad became a cell,
   // and merging took a thousand times as long (24 576 triangles: 44 s).
   void add_leaning(std::uint32_t first, std::uint32_t last, std::size_t first_seed) {
-    const auto limit = static_cast<float>(std::cos(options_.max_lean_degrees * M_PI / 180));
+    const auto limit = static_cast<float>(cosine_of(options_.max_lean_degrees));
     const auto cosine = [&](std::uint32_t g) {
       return glm::dot(calm_normal(g), normals_[owner_[g]]);
     };

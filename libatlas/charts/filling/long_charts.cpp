@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdint>
 #include <iterator>
+#include <numbers>
 #include <numeric>
 #include <utility>
 
@@ -80,7 +81,7 @@ Lengths lengths_of(const FlatChart& chart, std::size_t count) {
   param::HalfEdges half_edges;
   half_edges.build(chart.corners, chart.uvs.size());
   LineCutter cutter(chart, half_edges, all);
-  cutter.face(chart.size.x >= chart.size.y ? 0 : M_PI / 2);
+  cutter.face(chart.size.x >= chart.size.y ? 0 : std::numbers::pi / 2);
   const double length = (cutter.high() - cutter.low()) / double(count);
   const double crumb = kCrumb * chart.distortion.uv_area / double(count);
   std::vector<std::uint32_t> place(all.size(), 0);

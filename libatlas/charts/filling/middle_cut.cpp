@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cmath>
+#include <numbers>
 #include <utility>
 
 #include "libatlas/charts/filling/chords.h"
@@ -41,7 +42,7 @@ MiddleCut cut_middle(const FlatChart& chart, const param::HalfEdges& half_edges,
   const double whole = sprawl_of(chart, half_edges, triangles, belongs);
   MiddleCut best, middle;
   for (int i = 0; i < kDirections; ++i) {
-    cutter.face(M_PI * i / kDirections);
+    cutter.face(std::numbers::pi * i / kDirections);
     const double extent = cutter.high() - cutter.low();
     for (const double place : kPlaces) {
       LineCut made = cutter.cut(cutter.low() + place * extent, kBand * extent, limits.crumb);

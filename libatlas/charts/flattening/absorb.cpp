@@ -9,6 +9,7 @@
 #include "libatlas/charts/flattening/fitting_run.h"
 #include "libatlas/charts/flattening/joint.h"
 #include "libatlas/charts/merging/merge_options.h"
+#include "libatlas/core/degrees.h"
 #include "libatlas/core/glm_bridge.h"
 
 namespace atlas {
@@ -83,7 +84,7 @@ class Absorber {
         charts_(charts),
         patience_(choose_patience(input.flatten.options)),
         seam_worth_(merge_options(input.flatten.options.max_stretch).seam_worth),
-        crease_cosine_(std::cos(input.flatten.options.crease_degrees * M_PI / 180)),
+        crease_cosine_(cosine_of(input.flatten.options.crease_degrees)),
         work_(patience_.work * double(topology_.triangle_count())) {
     auto& label = input_.partition.chart;
     for (std::uint32_t k = 0; k < charts_.size(); ++k) {
@@ -144,7 +145,7 @@ class Absorber {
   }
 
   bool may_fit_cone(const FlatChart& a, const FlatChart& b) const {
-    const double limit = input_.flatten.options.cone_degrees * M_PI / 180;
+    const double limit = radians(input_.flatten.options.cone_degrees);
     if (limit <= 0) return true;
     const double between =
         std::acos(std::clamp(glm::dot(to_dvec(a.cone.axis), to_dvec(b.cone.axis)), -1.0, 1.0));

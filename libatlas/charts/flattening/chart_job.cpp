@@ -8,6 +8,7 @@
 #include "libatlas/charts/flattening/split.h"
 #include "libatlas/charts/merging/unroll.h"
 #include "libatlas/core/clock.h"
+#include "libatlas/core/degrees.h"
 #include "libatlas/core/glm_bridge.h"
 #include "libatlas/param/orient.h"
 
@@ -18,12 +19,12 @@ namespace {
 constexpr double kPlanarStretch = 1.001;
 constexpr double kFastPlanarStretch = 1.1;
 // Charts within a narrower cone are left to the projection, and not unrolled.
-constexpr double kFlatCone = 1 * M_PI / 180;
+constexpr double kFlatCone = radians(1);
 // Borders closer to each other than this share of the square root of the chart's area touch. Equal
 // sides come to lie on each other when parts unroll, and rounding would decide whether they cross.
 constexpr double kTouching = 2e-6;
 // A chart with holes is tried uncut if its cone is narrower; the normals of a tube exceed this.
-constexpr double kOpenCone = 85 * M_PI / 180;
+constexpr double kOpenCone = radians(85);
 constexpr int kSmallHole = 16, kLongestSlit = 100;  // edges
 // The altitude that slivers keep, relative to the square root of the chart's area.
 constexpr double kMinAltitude = 1e-7;
@@ -247,7 +248,7 @@ class ChartJob {
 
   bool beyond_cone() const {
     return input_.options.cone_degrees > 0 && chart_.triangles().size() > 1 &&
-           cone_.angle > input_.options.cone_degrees * M_PI / 180 * (1 + 1e-9);
+           cone_.angle > radians(input_.options.cone_degrees) * (1 + 1e-9);
   }
 
   std::vector<std::uint8_t> component_parts() const {

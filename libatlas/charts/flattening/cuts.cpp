@@ -2,6 +2,7 @@
 #include <cmath>
 #include <functional>
 #include <limits>
+#include <numbers>
 #include <queue>
 #include <unordered_set>
 
@@ -63,7 +64,7 @@ class EdgePaths {
 
   // Returns the angle defect of an inner vertex: 2 pi minus the angles around it.
   double defect(std::uint32_t v) const {
-    double sum = 2 * M_PI;
+    double sum = 2 * std::numbers::pi;
     std::uint32_t h = out_[v];
     do {
       const glm::dvec3 p = point(from(h)), a = point(from(next_half_edge(h))) - p,

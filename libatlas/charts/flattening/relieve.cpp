@@ -9,6 +9,7 @@
 #include "libatlas/charts/flattening/split.h"
 #include "libatlas/charts/merging/merge_options.h"
 #include "libatlas/charts/seams/refine.h"
+#include "libatlas/core/degrees.h"
 #include "libatlas/core/parallel.h"
 #include "libatlas/param/distortion.h"
 
@@ -38,7 +39,7 @@ class Reliever {
         partition_(partition),
         charts_(charts),
         seam_worth_(merge_options(input.options.max_stretch).seam_worth),
-        crease_cosine_(std::cos(input.options.crease_degrees * M_PI / 180)),
+        crease_cosine_(cosine_of(input.options.crease_degrees)),
         chart_area_(charts.size(), 0),
         piece_area_(topology_.component_count, 0),
         piece_triangles_(topology_.component_count, 0) {}

@@ -9,6 +9,7 @@
 #include "libatlas/charts/cells/tips.h"
 #include "libatlas/charts/merging/fan_centre.h"
 #include "libatlas/charts/merging/unroll.h"
+#include "libatlas/core/degrees.h"
 #include "libatlas/core/glm_bridge.h"
 
 namespace atlas {
@@ -27,7 +28,7 @@ class CoarseBuilder {
       : topology_(topology),
         cells_(cells),
         rims_(std::move(rims)),
-        crease_cosine_(std::cos(crease_degrees * M_PI / 180)) {}
+        crease_cosine_(cosine_of(crease_degrees)) {}
 
   CoarseMesh run() {
     mesh_.cells.resize(cells_.count);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <numbers>
 #include <queue>
 
 #include "libatlas/charts/geometry/moments.h"
@@ -164,7 +165,7 @@ class Merger {
     const double spread = options_.cone > 0 ? kConeWeight * (m[0] + m[3] + m[5])
                                             : std::max(0.0, smallest_eigenvalue(m));
     const double perimeter = p.perimeter + q.perimeter - 2 * border.length;
-    const double compact = perimeter / std::sqrt(4 * M_PI * area);
+    const double compact = perimeter / std::sqrt(4 * std::numbers::pi * area);
     return spread + options_.compactness_weight * compact +
            (border.length > 0 ? options_.crease_weight * border.crease / border.length : 0);
   }

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "libatlas/charts/mesh/chart_fans.h"
+#include "libatlas/core/degrees.h"
 #include "libatlas/core/glm_bridge.h"
 
 namespace atlas {
@@ -18,7 +19,7 @@ class Smoother {
         cone_(rules.cone),
         partition_(partition),
         frames_(frames),
-        crease_cosine_(std::cos(rules.crease_degrees * M_PI / 180)) {}
+        crease_cosine_(cosine_of(rules.crease_degrees)) {}
 
   void run() {
     const auto n = static_cast<std::uint32_t>(topology_.triangle_count());

@@ -7,6 +7,7 @@
 
 #include "libatlas/charts/mesh/chart_fans.h"
 #include "libatlas/charts/seams/band_paths.h"
+#include "libatlas/core/degrees.h"
 #include "libatlas/core/glm_bridge.h"
 
 namespace atlas {
@@ -37,7 +38,7 @@ class Slits::Straightener {
         bands_(options.bands),
         partition_(partition),
         frames_(frames),
-        crease_cosine_(std::cos(options.rules.crease_degrees * M_PI / 180)),
+        crease_cosine_(cosine_of(options.rules.crease_degrees)),
         fans_(topology, partition),
         paths_(topology, partition, crease_cosine_) {}
 

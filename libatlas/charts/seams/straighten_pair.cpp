@@ -5,6 +5,7 @@
 #include <cmath>
 #include <utility>
 
+#include "libatlas/core/degrees.h"
 #include "libatlas/core/glm_bridge.h"
 
 namespace atlas {
@@ -21,7 +22,7 @@ class PairStraightener {
         bands_(shared.bands),
         partition_(shared.partition),
         places_(shared.places),
-        crease_cosine_(std::cos(shared.rules.crease_degrees * M_PI / 180)),
+        crease_cosine_(cosine_of(shared.rules.crease_degrees)),
         charts_(pair.charts),
         border_(pair.border),
         band_(scratch.band),

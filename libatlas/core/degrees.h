@@ -1,0 +1,21 @@
+// Internal: angles in degrees, as options give them, and in radians.
+#pragma once
+
+#include <cmath>
+#include <numbers>
+
+namespace atlas {
+
+constexpr double radians(double angle) {
+  return angle * std::numbers::pi / 180;
+}
+
+constexpr double degrees(double angle) {
+  return angle * 180 / std::numbers::pi;
+}
+
+inline double cosine_of(double angle) {
+  return std::cos(radians(angle));
+}
+
+}  // namespace atlas
