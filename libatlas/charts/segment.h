@@ -1,7 +1,6 @@
 // Internal: divides a mesh into charts that are not flat yet.
 #pragma once
 
-#include <array>
 #include <vector>
 
 #include "libatlas/charts/charts.h"

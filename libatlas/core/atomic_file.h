@@ -4,7 +4,6 @@
 // wait for the disk (no fsync), which would take about 4 milliseconds per file.
 #pragma once
 
-#include <cstddef>
 #include <filesystem>
 #include <string_view>
 #include <vector>

@@ -1,7 +1,6 @@
 // Internal: the signed distance to a chart's outline, sampled on a grid.
 #pragma once
 
-#include <cstdint>
 #include <vector>
 
 #include "libatlas/pack/outline_mask.h"

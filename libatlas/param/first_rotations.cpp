@@ -1,7 +1,6 @@
 #include "libatlas/param/first_rotations.h"
 
 #include <array>
-#include <cmath>
 #include <limits>
 
 #include "libatlas/param/workspace.h"

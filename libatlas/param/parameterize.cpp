@@ -1,7 +1,6 @@
 #include "libatlas/param/parameterize.h"
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 #include <optional>
 #include <utility>

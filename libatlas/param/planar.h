@@ -3,7 +3,6 @@
 #pragma once
 
 #include <span>
-#include <vector>
 
 #include "libatlas/core/vec.h"
 #include "libatlas/param/local_mesh.h"

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "libatlas/core/glm_bridge.h"
 #include "libatlas/param/injectivity.h"

@@ -1,7 +1,6 @@
 // Internal: finds which surface samples are seen from places where people can stand.
 #pragma once
 
-#include <cstdint>
 #include <span>
 #include <vector>
 

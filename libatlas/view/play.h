@@ -3,8 +3,6 @@
 
 #include <cstdint>
 #include <filesystem>
-#include <functional>
-#include <string>
 
 #include "libatlas/core/context.h"
 #include "libatlas/shadow/light_path.h"

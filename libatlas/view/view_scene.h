@@ -5,8 +5,6 @@
 #include <compare>
 #include <cstddef>
 #include <cstdint>
-#include <span>
-#include <string>
 #include <vector>
 
 #include "libatlas/core/status.h"

@@ -1,7 +1,5 @@
 #include "libatlas/charts/cells/rims.h"
 
-#include <algorithm>
-
 namespace atlas {
 namespace {
 

@@ -1,6 +1,5 @@
 #include "libatlas/charts/flattening/split.h"
 
-#include <algorithm>
 #include <array>
 #include <functional>
 #include <limits>

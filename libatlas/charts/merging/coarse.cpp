@@ -1,6 +1,5 @@
 #include "libatlas/charts/merging/coarse.h"
 
-#include <algorithm>
 #include <cmath>
 #include <span>
 #include <utility>

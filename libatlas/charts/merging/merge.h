@@ -1,7 +1,6 @@
 // Internal: builds charts from micro-cells by greedy merging.
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
