@@ -97,7 +97,7 @@ Status no_room(const ChartSet& charts, const LayoutOptions& options) {
 
 // Limits of what PackPreset::best tries: the number of layouts, and the number of charts in all of
 // them together. This takes some seconds.
-constexpr std::uint64_t kBestLayouts = 8000, kBestCharts = 36000;
+constexpr std::uint64_t kBestLayouts = 8000, kBestCharts = 56000;
 
 // The problem for the packer, by boxes or by outlines as options.outlines says.
 struct Problem {
