@@ -23,10 +23,12 @@ constexpr std::size_t kStartedCharts = 480;
 constexpr std::size_t kMostStarts = 20;
 // The shares of their limits after which searches are compared, and the worse half given up: for
 // searches of few layouts, and for those of `best`, in which only the last four get many layouts.
+// When searches of few layouts were compared after a quarter and a half, machine parts filled 0.3 %
+// less.
 // Searches over few charts are not compared, because one lucky layout decides there. Neither are
 // those of the first draw, whose cells are coarse: they are cheap, and six models filled 0.7 %
 // less.
-constexpr std::array kLegs{0.25, 0.5, 1.0};
+constexpr std::array kLegs{1 / 3.0, 2 / 3.0, 1.0};
 constexpr std::array kAllAtOnce{1.0};
 constexpr std::array kLongLegs{1 / 32.0, 1 / 16.0, 1 / 8.0, 1.0};
 constexpr std::size_t kLeastLeft = 4, kFewCharts = 5;
@@ -100,7 +102,7 @@ std::span<const double> PressStarts::legs(std::uint32_t round) const {
 }
 
 // Runs the searches of all starts. Whether a strip's width suits the charts shows early, so the
-// worse half is given up twice on the way, and the searches take half the time.
+// worse half is given up twice on the way. Twelve searches take three fifths of the time then.
 void PressStarts::race(std::vector<Runner>& runners, std::uint32_t round) const {
   std::vector<Runner*> left;
   for (Runner& r : runners) left.push_back(&r);

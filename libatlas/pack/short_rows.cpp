@@ -188,8 +188,9 @@ struct BitPage::ShortRows {
   template <int kVectors>
   ATLAS_INLINE static bool find_in(BitPage& page, const Sought& sought, Place& place) {
     const auto& [tests, window, recent] = sought;
-    // What a call takes beside its probes, in probes.
-    constexpr std::uint64_t kCall = 4;
+    // What a call takes beside its probes, in probes. The budget of work ends searches, so this
+    // number also decides how many layouts are tried: with four, machine parts filled 0.3 % less.
+    constexpr std::uint64_t kCall = 2;
     Row<kVectors> row(page, window);
     bool found = true;
     for (std::size_t k = 0; k < recent.size() && found; ++k) {

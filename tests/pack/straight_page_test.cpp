@@ -48,6 +48,25 @@ TEST(StraightPage, ChartsLieSideBySide) {
   }
 }
 
+// Two interlocking pairs of U shapes fill a page in one row, which is twice as long as high. Pages
+// from the square down to 0.6 of its height have no room for both pairs side by side.
+TEST(StraightPage, InterlockingPairsLieInARow) {
+  std::vector<std::vector<Vec2d>> shapes;
+  for (int k = 0; k < 4; ++k) {
+    std::vector<Vec2d> shape = box(20, 4);
+    for (const Vec2d p : box(4, 16)) shape.push_back({p.x, p.y + 4});
+    for (const Vec2d p : box(4, 16)) shape.push_back({p.x + 16, p.y + 4});
+    shapes.push_back(shape);
+  }
+  const test::ChartItems charts(std::move(shapes));
+  const FitOptions o = options_for(charts, 2048);
+  ASSERT_TRUE(is_straight(outlines_of(charts.shapes, {})));
+  const Result<FitResult> page = fit_pages(charts.items, o, {});
+  ASSERT_TRUE(page.ok());
+  EXPECT_GT(page->utilization, 0.69);
+  EXPECT_EQ(test::check_outlines(test::placed_shapes(charts, *page), page->pages, o.padding), "");
+}
+
 // `best` keeps to its effort on a square page, and is never worse than the search over cells.
 TEST(StraightPage, BestIsNoWorseOnASquarePage) {
   std::vector<std::vector<Vec2d>> bars;
@@ -75,7 +94,7 @@ TEST(StraightPage, BestTriesNoMoreLayoutsThanItsEffort) {
     o.effort = effort;
     const PressedPage page = pack_straight(outlines_of(charts.shapes, {}), o, {});
     EXPECT_GE(page.layouts, effort);
-    EXPECT_LE(page.layouts, effort + 15);
+    EXPECT_LE(page.layouts, effort + 19);
   }
 }
 
