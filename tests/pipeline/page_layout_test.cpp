@@ -131,7 +131,7 @@ Shape rings_and_strips() {
     }
     all = together(all, sector);
   }
-  for (int k = 0; k < 12; ++k)
+  for (int k = 0; k < 13; ++k)
     all = together(all, moved(grid(4, 2, 1.2, 0.03), 1, {0, 3 + 0.1 * k, 0}));
   return all;
 }
