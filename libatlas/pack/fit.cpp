@@ -106,8 +106,8 @@ std::int32_t outline_alignment(const FitOptions& options) {
   return alignment;
 }
 
-FitOptions for_items(std::size_t items, const FitOptions& given) {
-  FitOptions options = given;
+pack::FitSearchOptions for_items(std::size_t items, const pack::FitSearchOptions& given) {
+  pack::FitSearchOptions options = given;
   if (options.free_aspect) options.power_of_two = options.square = false;
   options.pages =
       std::min(given.pages, static_cast<std::uint32_t>(std::max<std::size_t>(1, items)));
@@ -123,34 +123,40 @@ void note_lost_area(std::span<const pack::ChartOutline> outlines, const FitOptio
 
 }  // namespace
 
-Result<FitResult> fit_pages(std::span<const FitItem> items, const FitOptions& given,
-                            const Context& context) {
+namespace pack {
+
+Result<FitResult> search_fit(std::span<const FitItem> items, const FitSearchOptions& given,
+                             const Context& context) {
   if (Status status = check(items, given); !status.ok()) return status;
-  const FitOptions options = for_items(items.size(), given);
+  const FitSearchOptions options = for_items(items.size(), given);
   if (items.empty()) {
     FitResult none;
     none.scale = options.max_scale;
     return none;
   }
-  if (options.shapes.empty()) return pack::fit_boxes(items, options, context);
-  const std::vector<pack::ChartOutline> outlines = pack::outlines_of(options.shapes, context);
-  Result<FitResult> fitted = pack::fit_outlines({items, outlines}, options, context);
+  if (options.shapes.empty()) return fit_boxes(items, options, context);
+  const std::vector<ChartOutline> outlines = outlines_of(options.shapes, context);
+  Result<FitResult> fitted = fit_outlines({items, outlines}, options, context);
   if (fitted.ok()) note_lost_area(outlines, options, context, *fitted);
   if (context.cancelled()) return Status::cancelled();
   return fitted;
 }
 
 Result<FitResult> press_fit(FitResult fitted, std::span<const FitItem> items,
-                            const FitOptions& given, const Context& context) {
-  if (Status status = check(items, given); !status.ok()) return status;
-  if (given.shapes.empty() || fitted.placements.size() != items.size())
-    return Status(ErrorCode::bad_input, "fit: only a fit of these items to outlines is pressed");
-  const FitOptions options = for_items(items.size(), given);
-  const std::vector<pack::ChartOutline> outlines = pack::outlines_of(options.shapes, context);
-  std::optional<FitResult> denser = pack::press_pages(fitted, {items, outlines}, options, context);
+                            const FitSearchOptions& given, const Context& context) {
+  const FitSearchOptions options = for_items(items.size(), given);
+  const std::vector<ChartOutline> outlines = outlines_of(options.shapes, context);
+  std::optional<FitResult> denser = press_pages(fitted, {items, outlines}, options, context);
   if (denser) note_lost_area(outlines, options, context, *denser);
   if (context.cancelled()) return Status::cancelled();
   return denser ? std::move(*denser) : std::move(fitted);
+}
+
+}  // namespace pack
+
+Result<FitResult> fit_pages(std::span<const FitItem> items, const FitOptions& options,
+                            const Context& context) {
+  return pack::search_fit(items, {options}, context);
 }
 
 }  // namespace atlas

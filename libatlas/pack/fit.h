@@ -55,12 +55,6 @@ struct FitOptions {
   // possible. This overrides power_of_two and square. Without shapes it does nothing else. With
   // several pages it also turns press_pages off.
   bool free_aspect = false;
-  // A single page that is filled less than this share is of no use to the caller. So the search for
-  // a layout of outlines ends early if the page is far emptier after the first draws. If charts are
-  // laid in rows and `best` has an effort, it also ends if the page is still below this share after
-  // a further round. Several pages are no longer pressed once they are unlikely to become so full.
-  // 0: the search is as long as usual.
-  double wanted_fill = 0;
   // Limits of `best` on a single page of outlines. The result depends on effort and seed only,
   // unless effort is 0 and time is the limit.
   double time_budget = 1.0;  // wall time in seconds, at least 0 or infinite
@@ -68,10 +62,6 @@ struct FitOptions {
   // A layout that takes long counts as several.
   std::uint64_t effort = 0;
   std::uint64_t seed = 1;
-  // For `best` on a single page of outlines that is pressed or laid in rows: the number of layouts
-  // that `standard` has already tried for the same items. They count as effort, and whatever would
-  // only repeat them is left out.
-  std::uint64_t tried = 0;
   // For fit_boxes_or_outlines: the area that the shapes cover at scale 1, in square texels. 0: the
   // sum of their triangles, which is the same unless charts overlap themselves.
   double shapes_area = 0;
@@ -152,12 +142,5 @@ Result<FitResult> fit_pages(std::span<const FitItem> items, const FitOptions& op
 // offset + scale · R(angle) · p in either case. Errors: those of fit_pages.
 Result<FitResult> fit_boxes_or_outlines(std::span<const FitItem> items, const FitOptions& options,
                                         const Context& context);
-
-// Does the last step of fit_pages with press_pages for a fit to outlines that was made without it.
-// `fitted` is the result of fit_pages for the same items and options. Returns a denser fit if
-// pressing finds one, otherwise `fitted`. Errors: those of fit_pages, and bad_input if `fitted` is
-// not a fit of these items to outlines.
-Result<FitResult> press_fit(FitResult fitted, std::span<const FitItem> items,
-                            const FitOptions& options, const Context& context);
 
 }  // namespace atlas

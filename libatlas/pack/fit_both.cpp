@@ -4,8 +4,8 @@
 #include <vector>
 
 #include "libatlas/core/progress.h"
-#include "libatlas/pack/fit.h"
 #include "libatlas/pack/fit_result.h"
+#include "libatlas/pack/fit_search.h"
 #include "libatlas/pack/shape_check.h"
 
 namespace atlas {
@@ -109,31 +109,41 @@ class Comparison {
 
 }  // namespace
 
-Result<FitResult> fit_boxes_or_outlines(std::span<const FitItem> items, const FitOptions& options,
-                                        const Context& context) {
-  FitOptions by_boxes = options;
+namespace pack {
+
+Result<FitResult> search_boxes_or_outlines(std::span<const FitItem> items,
+                                           const FitSearchOptions& options,
+                                           const Context& context) {
+  FitSearchOptions by_boxes = options;
   by_boxes.shapes = {};
   // Boxes are turned by quarter turns, which few directions do not include.
   by_boxes.allow_rotation = options.allow_rotation && options.rotations >= 4;
   if (options.shapes.size() != items.size() || items.empty())
-    return fit_pages(items, options, context);
-  if (Status s = pack::check_shapes(options.shapes); !s.ok()) return s;
+    return search_fit(items, options, context);
+  if (Status s = check_shapes(options.shapes); !s.ok()) return s;
   constexpr double kBoxes = 1.0 / 3;  // share of the progress
   Result<FitResult> boxed =
-      fit_pages(items, by_boxes, part_of_stage(context, "packing", 0, kBoxes));
+      search_fit(items, by_boxes, part_of_stage(context, "packing", 0, kBoxes));
   if (!boxed.ok() && boxed.status().code() != ErrorCode::no_solution) return boxed;
   const Comparison comparison(items, options);
   if (boxed.ok()) {
     comparison.complete(*boxed);
     if (!comparison.may_beat(*boxed)) return boxed;
   }
-  Result<FitResult> best = fit_pages(items, options, part_of_stage(context, "packing", kBoxes, 1));
+  Result<FitResult> best = search_fit(items, options, part_of_stage(context, "packing", kBoxes, 1));
   if (!best.ok()) return boxed.ok() && !context.cancelled() ? std::move(boxed) : std::move(best);
   comparison.complete_outlined(*best);
   if (!boxed.ok() || comparison.better(*best, *boxed)) return best;
   boxed->lost_area = best->lost_area;
   boxed->layouts = best->layouts;
   return boxed;
+}
+
+}  // namespace pack
+
+Result<FitResult> fit_boxes_or_outlines(std::span<const FitItem> items, const FitOptions& options,
+                                        const Context& context) {
+  return pack::search_boxes_or_outlines(items, {options}, context);
 }
 
 }  // namespace atlas

@@ -203,14 +203,14 @@ constexpr std::size_t kFewInRows = 64;  // charts
 // Returns whether a page that the search over cells has filled to this share is pressed in a second
 // try. With specks, which the search lays into the gaps as well, pressing gains little unless the
 // page is poorly filled, and seldom more than kMostPressed.
-bool worth_pressing_late(double fill, const FitOptions& options) {
+bool worth_pressing_late(double fill, const FitSearchOptions& options) {
   constexpr double kPoorFill = 0.7, kMostPressed = 1.08;
   return fill < kPoorFill && kMostPressed * fill >= options.wanted_fill;
 }
 
 }  // namespace
 
-Result<FitResult> fit_outlines(const FitCharts& charts, const FitOptions& options,
+Result<FitResult> fit_outlines(const FitCharts& charts, const FitSearchOptions& options,
                                const Context& context) {
   const auto [items, outlines] = charts;
   FitResult result;

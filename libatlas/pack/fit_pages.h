@@ -4,7 +4,7 @@
 #include <optional>
 
 #include "libatlas/pack/chart_outline.h"
-#include "libatlas/pack/fit.h"
+#include "libatlas/pack/fit_search.h"
 
 namespace atlas::pack {
 
@@ -20,13 +20,13 @@ struct FitCharts {
 
 // Does fit_pages for charts given by their outlines. The arguments must have been checked. The
 // caller has to set lost_area.
-Result<FitResult> fit_outlines(const FitCharts& charts, const FitOptions& options,
+Result<FitResult> fit_outlines(const FitCharts& charts, const FitSearchOptions& options,
                                const Context& context);
 
 // Does the same for one page of few charts by pressing. Returns nothing if pressing is not worth a
 // try (worth_pressing), finds nothing, or does not give what was asked for: if all charts fit at
 // the largest scale and the page could be smaller, or if some charts reach their minimum sides.
-std::optional<FitResult> fit_pressed(const FitCharts& charts, const FitOptions& options,
+std::optional<FitResult> fit_pressed(const FitCharts& charts, const FitSearchOptions& options,
                                      const Context& context);
 
 // Makes a fit to several pages of few charts each denser. Every page is pressed, and charts change
@@ -34,7 +34,7 @@ std::optional<FitResult> fit_pressed(const FitCharts& charts, const FitOptions& 
 // or finds no larger scale than the fit has. The layouts tried are added to those of the fit in any
 // case.
 std::optional<FitResult> press_pages(FitResult& fitted, const FitCharts& charts,
-                                     const FitOptions& options, const Context& context);
+                                     const FitSearchOptions& options, const Context& context);
 
 // Groups these areas by F(A) = N. It does not search below the bisection's result, because it is
 // called for every scale that is tried. Returns false if there is no grouping (the areas exceed

@@ -11,7 +11,7 @@
 
 namespace atlas::pack {
 
-std::optional<FitResult> fit_pressed(const FitCharts& charts, const FitOptions& options,
+std::optional<FitResult> fit_pressed(const FitCharts& charts, const FitSearchOptions& options,
                                      const Context& context) {
   const auto [items, outlines] = charts;
   if (!worth_pressing(outlines, options)) return std::nullopt;

@@ -42,7 +42,7 @@ constexpr double kLeastExpected = 1.005;
 
 class PagePress {
  public:
-  PagePress(std::span<const ChartOutline> outlines, const FitOptions& options,
+  PagePress(std::span<const ChartOutline> outlines, const FitSearchOptions& options,
             const Context& context)
       : outlines_(outlines), options_(options), context_(context) {
     options_.pages = 1;
@@ -276,7 +276,7 @@ class PagePress {
   }
 
   std::span<const ChartOutline> outlines_;
-  FitOptions options_;
+  FitSearchOptions options_;
   const Context& context_;
   std::vector<Group> groups_;
   std::map<std::vector<std::uint32_t>, PressedPage> drawn_;  // by the charts of a page
@@ -294,7 +294,7 @@ bool below_minimum(std::span<const FitItem> items, const FitOptions& options, do
 }  // namespace
 
 std::optional<FitResult> press_pages(FitResult& fitted, const FitCharts& charts,
-                                     const FitOptions& options, const Context& context) {
+                                     const FitSearchOptions& options, const Context& context) {
   if (!options.press_pages || options.pages < 2 || fitted.pages.size() < options.pages ||
       options.free_aspect || fitted.scale >= options.max_scale ||
       options.preset == PackPreset::fast || below_minimum(charts.items, options, fitted.scale)) {

@@ -33,7 +33,8 @@ constexpr Effort kRough{0.015, 0.006, 500}, kThorough{0.008, 0.003, 2000},
 
 class Press {
  public:
-  Press(std::span<const ChartOutline> outlines, const FitOptions& options, const Context& context)
+  Press(std::span<const ChartOutline> outlines, const FitSearchOptions& options,
+        const Context& context)
       : outlines_(outlines),
         options_(options),
         context_(context),
@@ -215,7 +216,7 @@ class Press {
   }
 
   std::span<const ChartOutline> outlines_;
-  const FitOptions& options_;
+  const FitSearchOptions& options_;
   const Context& context_;
   std::vector<std::uint32_t> pressed_;  // the others are specks
   std::vector<ChartOutline> own_outlines_;
@@ -225,7 +226,7 @@ class Press {
 
 }  // namespace
 
-PressedPage begun_page(const FitOptions& options, std::uint32_t draws) {
+PressedPage begun_page(const FitSearchOptions& options, std::uint32_t draws) {
   PressedPage page;
   if (options.preset != PackPreset::best || options.tried == 0) return page;
   page.layouts = options.tried;
@@ -256,12 +257,12 @@ bool worth_pressing(std::span<const ChartOutline> outlines, const FitOptions& op
          !charts_to_press(outlines, options).empty();
 }
 
-PressedPage press_outlines(std::span<const ChartOutline> outlines, const FitOptions& options,
+PressedPage press_outlines(std::span<const ChartOutline> outlines, const FitSearchOptions& options,
                            const Context& context) {
   return Press(outlines, options, context).run();
 }
 
-void draw_again(std::span<const ChartOutline> outlines, const FitOptions& options,
+void draw_again(std::span<const ChartOutline> outlines, const FitSearchOptions& options,
                 const Context& context, PressedPage& page) {
   Press(outlines, options, context).draw(page);
 }

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "libatlas/pack/chart_outline.h"
-#include "libatlas/pack/fit.h"
+#include "libatlas/pack/fit_search.h"
 
 namespace atlas::pack {
 
@@ -42,7 +42,7 @@ struct PressedPage {
 
 // Returns the page with which a search begins: an empty one, or the state after this many draws,
 // which are the most that `standard` makes, if it has been there already.
-PressedPage begun_page(const FitOptions& options, std::uint32_t draws);
+PressedPage begun_page(const FitSearchOptions& options, std::uint32_t draws);
 
 // Records a round of a search that has found `best` after this many seconds. `use` is the share of
 // the page that it fills. If this is more than before, a point is added to the curve. Returns the
@@ -56,13 +56,13 @@ bool worth_pressing(std::span<const ChartOutline> outlines, const FitOptions& op
 
 // Makes layouts on coarse cells for several widths of the page, pushes the best of them together as
 // rigid bodies, and places the best of these exactly. The options must have been checked.
-PressedPage press_outlines(std::span<const ChartOutline> outlines, const FitOptions& options,
+PressedPage press_outlines(std::span<const ChartOutline> outlines, const FitSearchOptions& options,
                            const Context& context);
 
 // These do what press_outlines does, one draw at a time, for callers that compare pages and need
 // few of them in full. draw_again makes the next draw of a page. worth_another_draw returns whether
 // one is worthwhile, by the rule that press_outlines uses for all presets but `best`.
-void draw_again(std::span<const ChartOutline> outlines, const FitOptions& options,
+void draw_again(std::span<const ChartOutline> outlines, const FitSearchOptions& options,
                 const Context& context, PressedPage& page);
 bool worth_another_draw(std::uint32_t draws, double fill, double wanted_fill);
 

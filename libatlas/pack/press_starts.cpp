@@ -55,7 +55,7 @@ double goodness(const SqueezePage& page, const FitOptions& options) {
                                   : std::pow(std::max(page.width, page.height), 2));
 }
 
-PressStarts::PressStarts(std::span<const ChartOutline> outlines, const FitOptions& options,
+PressStarts::PressStarts(std::span<const ChartOutline> outlines, const FitSearchOptions& options,
                          const Context& context)
     : outlines_(outlines), options_(options), context_(context) {
   double area = 0;

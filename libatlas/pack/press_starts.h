@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "libatlas/pack/fit.h"
+#include "libatlas/pack/fit_search.h"
 #include "libatlas/pack/nest.h"
 #include "libatlas/pack/squeeze.h"
 
@@ -44,7 +44,7 @@ double goodness(const SqueezePage& page, const FitOptions& options);
 // All arguments of the constructor must outlive the object.
 class PressStarts {
  public:
-  PressStarts(std::span<const ChartOutline> outlines, const FitOptions& options,
+  PressStarts(std::span<const ChartOutline> outlines, const FitSearchOptions& options,
               const Context& context);
 
   double scale() const { return scale_; }
@@ -74,7 +74,7 @@ class PressStarts {
   void put_down(const Nest& nest, PressStart& start) const;
 
   std::span<const ChartOutline> outlines_;
-  const FitOptions& options_;
+  const FitSearchOptions& options_;
   const Context& context_;
   double scale_ = 1;
   // Side in texels of a square page that the charts, as rasterised, fill to the expected share.

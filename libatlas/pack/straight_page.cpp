@@ -116,7 +116,7 @@ class Slider {
 
 class StraightPage {
  public:
-  StraightPage(std::span<const ChartOutline> outlines, const FitOptions& options,
+  StraightPage(std::span<const ChartOutline> outlines, const FitSearchOptions& options,
                const Context& context)
       : outlines_(outlines),
         options_(options),
@@ -261,7 +261,7 @@ class StraightPage {
   }
 
   std::span<const ChartOutline> outlines_;
-  const FitOptions& options_;
+  const FitSearchOptions& options_;
   const Context& context_;
   std::int32_t cell_;
   double area_ = 0, longest_ = 0;
@@ -284,7 +284,7 @@ bool is_straight(std::span<const ChartOutline> outlines) {
   return along > kShare * all;
 }
 
-PressedPage pack_straight(std::span<const ChartOutline> outlines, const FitOptions& options,
+PressedPage pack_straight(std::span<const ChartOutline> outlines, const FitSearchOptions& options,
                           const Context& context) {
   return StraightPage(outlines, options, context).run();
 }

@@ -14,7 +14,7 @@ bool is_straight(std::span<const ChartOutline> outlines);
 // Makes layouts on cells for several scales, and then slides every chart down and to the left on
 // exact masks. No side of the page exceeds options.page_size. This is for options.free_aspect. The
 // options must have been checked.
-PressedPage pack_straight(std::span<const ChartOutline> outlines, const FitOptions& options,
+PressedPage pack_straight(std::span<const ChartOutline> outlines, const FitSearchOptions& options,
                           const Context& context);
 
 }  // namespace atlas::pack

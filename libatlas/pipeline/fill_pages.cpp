@@ -8,6 +8,7 @@
 
 #include "libatlas/charts/tiles.h"
 #include "libatlas/core/progress.h"
+#include "libatlas/pipeline/layout_effort.h"
 
 namespace atlas {
 namespace {
@@ -64,17 +65,17 @@ struct Goal {
       return kFilledFree;
     return several() ? kFilledSeveral : kFilled;
   }
-  bool reached(const PageLayout& layout) const {
+  bool reached(const WorkedLayout& layout) const {
     const bool dense = !options.free_aspect && layout.scale >= 1;
     return dense || covered(layout) >= full(layout);
   }
   // Returns the share of the pages that the charts of a layout must cover for it to be reached.
-  double full(const PageLayout& layout) const {
+  double full(const WorkedLayout& layout) const {
     return enough(layout.placements.size()) / layout.with_lost_room;
   }
   // Returns the share of the pages that pieces must cover. `seams` is by how much seams become
   // longer, relative to the square root of the surface's area.
-  double wanted(const PageLayout& before, double seams) const {
+  double wanted(const WorkedLayout& before, double seams) const {
     const double gain = std::max(several() ? kLeastGainSeveral : kLeastGain, kSeamPrice * seams);
     const double now = covered(before), worth = (1 + gain) * now;
     const double poor = kFilledFree / before.with_lost_room;
@@ -86,7 +87,7 @@ struct Goal {
 // A way of cutting charts (at first none is cut), and the layout of the pieces.
 struct Way {
   ChartSet charts;
-  PageLayout layout;
+  WorkedLayout layout;
   bool pressed = false;
 };
 
@@ -95,8 +96,8 @@ class PageFiller {
   PageFiller(const PlainUvs& uvs, const LayoutOptions& options, const ChartSet& charts,
              const Context& context)
       : uvs_(uvs),
-        options_(options),
-        unpressed_(options),
+        options_{options},
+        unpressed_{options},
         context_(context),
         goal_{options_, charts.distortion.uv_area * uvs.density * uvs.density} {
     // Several pages are pressed only if it may decide between ways, and at the end, because it
@@ -107,8 +108,8 @@ class PageFiller {
 
   // Replaces the charts by those that are laid out.
   Result<PageLayout> run(ChartSet& charts) {
-    Result<PageLayout> first = lay_out(charts, unpressed_);
-    if (!first.ok()) return first;
+    Result<WorkedLayout> first = lay_out(charts, unpressed_);
+    if (!first.ok()) return first.status();
     Way best{charts, std::move(*first)};
     if (may_cut(charts) && !goal_.reached(best.layout)) {
       if (Status s = work(best, unpressed_, goal_.full(best.layout)); !s.ok()) return s;
@@ -120,7 +121,7 @@ class PageFiller {
     if (Status s = work(best, unpressed_, 0); !s.ok()) return s;
     if (Status s = press(best, options_, 0); !s.ok()) return s;
     charts = std::move(best.charts);
-    return std::move(best.layout);
+    return PageLayout(std::move(best.layout));
   }
 
  private:
@@ -136,29 +137,29 @@ class PageFiller {
     return std::vector<Vec2d>(charts.charts.size(), Vec2d{uvs_.density, uvs_.density});
   }
 
-  Result<PageLayout> lay_out(const ChartSet& charts, const LayoutOptions& options) const {
-    return lay_out_pages(charts, densities(charts), options, part(0, kLaidOut));
+  Result<WorkedLayout> lay_out(const ChartSet& charts, const LayoutEffort& options) const {
+    return lay_out_charts({charts, densities(charts)}, options, part(0, kLaidOut));
   }
 
   // Spends more effort on a single page, if it may then cover the share `wanted`.
-  Status work(Way& way, LayoutOptions options, double wanted) const {
+  Status work(Way& way, LayoutEffort options, double wanted) const {
     options.wanted_fill = wanted;
     const std::vector<Vec2d> wanted_densities = densities(way.charts);
-    Result<PageLayout> fuller = work_on_layout({way.charts, wanted_densities}, options,
-                                               std::move(way.layout), part(kLaidOut, 1));
+    Result<WorkedLayout> fuller = work_on_layout({way.charts, wanted_densities}, options,
+                                                 std::move(way.layout), part(kLaidOut, 1));
     if (!fuller.ok()) return fuller.status();
     way.layout = std::move(*fuller);
     return {};
   }
 
   // Presses the pages, if they may then cover the share `wanted`.
-  Status press(Way& way, const LayoutOptions& options, double wanted) const {
+  Status press(Way& way, const LayoutEffort& options, double wanted) const {
     if (way.pressed || !options_.press_pages || way.layout.pages.size() < 2 ||
         kMostPressed * goal_.covered(way.layout) < wanted) {
       return {};
     }
     const std::vector<Vec2d> wanted_densities = densities(way.charts);
-    Result<PageLayout> pressed =
+    Result<WorkedLayout> pressed =
         press_layout({way.charts, wanted_densities}, options, way.layout, part(kLaidOut, 1));
     if (!pressed.ok()) return pressed.status();
     way.layout = std::move(*pressed);
@@ -174,7 +175,7 @@ class PageFiller {
   // Estimates the factor by which more effort may fill the page of pieces, from the factor for the
   // page of whole charts. With 60 triangles of one size, more effort won 1 % in 3.5 s, and took
   // that long again for each way of cutting.
-  double most_won_by_pieces(const PageLayout& whole) const {
+  double most_won_by_pieces(const WorkedLayout& whole) const {
     constexpr double kOnceMore = 2, kLeast = 1.01;
     if (whole.won == 0) return unpressed_.most_won;
     return std::clamp(1 + kOnceMore * (whole.won - 1), kLeast, unpressed_.most_won);
@@ -201,10 +202,10 @@ class PageFiller {
       const double seams = (way.charts.seam_length - best.charts.seam_length) / root_area;
       const double wanted = goal_.wanted(best.layout, seams);
       if (wanted >= 1) continue;  // more than full pages hold
-      LayoutOptions further = unpressed_;
+      LayoutEffort further = unpressed_;
       further.wanted_fill = wanted;
       further.most_won = most_won;
-      Result<PageLayout> layout = lay_out(way.charts, further);
+      Result<WorkedLayout> layout = lay_out(way.charts, further);
       if (!layout.ok() && layout.status().code() != ErrorCode::no_solution) return layout.status();
       // The gutters around the pieces take more room than there is, and those around smaller pieces
       // would take even more.
@@ -224,13 +225,13 @@ class PageFiller {
 
   // Lays pieces out better if that may make a single page full enough, or several pages as full as
   // they are wanted. Several pages are only pressed if `may_press`.
-  Status improve(Way& way, const LayoutOptions& further, bool may_press) const {
+  Status improve(Way& way, const LayoutEffort& further, bool may_press) const {
     const double full = std::max(further.wanted_fill, goal_.full(way.layout));
     if (!goal_.reached(way.layout)) {
       if (Status s = work(way, further, full); !s.ok()) return s;
     }
     if (!may_press) return {};
-    LayoutOptions pressed = further;
+    LayoutEffort pressed = further;
     pressed.press_pages = true;
     return press(way, pressed, std::max(further.wanted_fill, kFilledFree));
   }
@@ -239,8 +240,8 @@ class PageFiller {
   static constexpr double kLaidOut = 0.4;
 
   const PlainUvs& uvs_;
-  const LayoutOptions& options_;
-  LayoutOptions unpressed_;
+  const LayoutEffort options_;
+  LayoutEffort unpressed_;
   const Context& context_;
   Goal goal_;
   int parts_ = 0;  // how many are done

@@ -10,7 +10,6 @@
 #include "libatlas/charts/charts.h"
 #include "libatlas/core/context.h"
 #include "libatlas/core/status.h"
-#include "libatlas/pack/fit.h"
 #include "libatlas/pack/grouping.h"
 #include "libatlas/pack/pack.h"
 
@@ -26,11 +25,6 @@ struct LayoutOptions {
   // Use one page whose sides are at most page_size, and make it as full as possible. This is for
   // uvs without images, where texels have no size.
   bool free_aspect = false;
-  bool press_pages = true;     // as in FitOptions
-  double wanted_fill = 0;      // as in FitOptions
-  std::uint64_t tried = 0;     // as in FitOptions
-  double most_won = 1.1;       // by which factor more effort may make a poorly filled page fuller
-  bool more_work = true;       // spend more effort on a poorly filled page; see work_on_layout()
   bool square = false;         // pages are as wide as high; free_aspect overrides it
   bool allow_rotation = true;  // turn charts to pack better; else they lie as their uvs do
   PackPreset preset = PackPreset::standard;
@@ -46,13 +40,6 @@ struct PageLayout {
   double scale = 1;                             // common to all densities
   double utilization = 0;                       // as in FitResult
   double uv_utilization = 0;                    // area of the charts / area of the pages
-  // The area of the charts together with their small holes and narrow bays, which are lost because
-  // no chart could lie in them, divided by the area of the charts alone. It is 1 if outlines were
-  // not tried.
-  double with_lost_room = 1;
-  std::uint64_t layouts = 0;  // how many layouts of outlines were tried
-  // The factor by which more effort made a poorly filled page fuller; 0 if none was spent.
-  double won = 0;
   GroupingResult grouping = {};
 };
 
@@ -64,22 +51,5 @@ double filling_density(const ChartSet& charts, double texels);
 // Errors: no_solution if even the smallest textures do not fit; bad_option; bad_input; cancelled.
 Result<PageLayout> lay_out_pages(const ChartSet& charts, std::span<const Vec2d> texels_per_unit,
                                  const LayoutOptions& options, const Context& context);
-
-// The charts to place, and their densities.
-struct WantedCharts {
-  const ChartSet& charts;
-  std::span<const Vec2d> texels_per_unit = {};  // one per chart, > 0
-};
-
-// Does the same as lay_out_pages() if `unpressed` is what it returned without press_pages for the
-// same charts and options. The pages of outlines are then only pressed, and not searched for again.
-Result<PageLayout> press_layout(const WantedCharts& wanted, const LayoutOptions& options,
-                                const PageLayout& unpressed, const Context& context);
-
-// Packs a poorly filled page again with more effort, if it may then be filled to wanted_fill.
-// `standard` is what lay_out_pages() returned without more_work for the same charts and options.
-// Returns the better layout of the two.
-Result<PageLayout> work_on_layout(const WantedCharts& wanted, const LayoutOptions& options,
-                                  PageLayout standard, const Context& context);
 
 }  // namespace atlas

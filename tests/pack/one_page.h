@@ -5,7 +5,7 @@
 
 #include <vector>
 
-#include "libatlas/pack/fit.h"
+#include "libatlas/pack/fit_search.h"
 #include "tests/pack/checks.h"
 
 namespace atlas::test {
@@ -15,8 +15,8 @@ inline std::vector<Vec2d> box(double width, double height) {
 }
 
 // Returns options for one page of any shape, with a texel between charts.
-inline FitOptions options_for(const ChartItems& charts, int page_size) {
-  FitOptions o;
+inline pack::FitSearchOptions options_for(const ChartItems& charts, int page_size) {
+  pack::FitSearchOptions o;
   o.page_size = page_size;
   o.padding = o.alignment = 1;
   o.minimum_side = 0;

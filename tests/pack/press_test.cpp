@@ -250,7 +250,7 @@ TEST(Press, WhatIsFarFromTheFillWantedIsNotDrawnAgain) {
     area += outlines.back().area;
   }
   const test::ChartItems charts(std::move(stars));
-  FitOptions o = options_for(charts, 512);
+  FitSearchOptions o = options_for(charts, 512);
   const auto fill = [&](const PressedPage& page) {
     return page.scale * page.scale * area / double(page.page.area());
   };
@@ -281,7 +281,7 @@ TEST(Press, BestGoesOnAfterStandard) {
   std::vector<std::vector<Vec2d>> blobs;
   for (int k = 0; k < 10; ++k) blobs.push_back(test::blob(noise, 30 + 40 * noise.unit(), 6));
   const test::ChartItems charts(std::move(blobs));
-  FitOptions o = options_for(charts, 512);
+  FitSearchOptions o = options_for(charts, 512);
   const std::vector<ChartOutline> outlines = outlines_of(charts.shapes, {});
   PressedPage standard;
   for (int draw = 0; draw < 3; ++draw) draw_again(outlines, o, {}, standard);

@@ -88,7 +88,7 @@ TEST(StraightPage, BestTriesNoMoreLayoutsThanItsEffort) {
   std::vector<std::vector<Vec2d>> bars;
   for (int k = 0; k < 12; ++k) bars.push_back(box(60 + 17 * k, 20 + 11 * (k % 5)));
   const test::ChartItems charts(std::move(bars));
-  FitOptions o = options_for(charts, 512);
+  FitSearchOptions o = options_for(charts, 512);
   o.preset = PackPreset::best;
   for (const std::uint64_t effort : {1, 330, 500, 1000}) {
     o.effort = effort;
@@ -101,7 +101,7 @@ TEST(StraightPage, BestTriesNoMoreLayoutsThanItsEffort) {
 // Boxes of one size are packed as well as possible at once.
 TEST(StraightPage, BestEndsWithARoundThatWinsNothing) {
   const test::ChartItems charts(std::vector<std::vector<Vec2d>>(6, box(60, 20)));
-  FitOptions o = options_for(charts, 512);
+  FitSearchOptions o = options_for(charts, 512);
   const std::vector<ChartOutline> outlines = outlines_of(charts.shapes, {});
   const PressedPage standard = pack_straight(outlines, o, {});
   o.preset = PackPreset::best;
@@ -116,7 +116,7 @@ TEST(StraightPage, BestGoesOnAfterStandard) {
   std::vector<std::vector<Vec2d>> bars;
   for (int k = 0; k < 12; ++k) bars.push_back(box(60 + 17 * k, 20 + 11 * (k % 5)));
   const test::ChartItems charts(std::move(bars));
-  FitOptions o = options_for(charts, 512);
+  FitSearchOptions o = options_for(charts, 512);
   const std::vector<ChartOutline> outlines = outlines_of(charts.shapes, {});
   const PressedPage standard = pack_straight(outlines, o, {});
   o.preset = PackPreset::best;
@@ -159,7 +159,7 @@ TEST(StraightPage, WorkIsLimited) {
     triangles.push_back({{0, 0}, {w, 0}, {w * noise.unit(), h}});
   }
   const test::ChartItems charts(std::move(triangles));
-  FitOptions o = options_for(charts, 1024);
+  FitSearchOptions o = options_for(charts, 1024);
   const std::vector<ChartOutline> outlines = outlines_of(charts.shapes, {});
   ASSERT_TRUE(is_straight(outlines));
   const PressedPage standard = pack_straight(outlines, o, {});

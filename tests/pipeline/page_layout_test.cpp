@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "libatlas/pipeline/export_world.h"
+#include "libatlas/pipeline/layout_effort.h"
 #include "tests/pipeline/lit_scene.h"
 #include "tests/scene/temp_folder.h"
 #include "tests/support/shapes.h"
@@ -166,14 +167,14 @@ TEST(Layout, APoorPageOfPlainUvsIsPackedWithMoreWork) {
 TEST(Layout, MoreWorkIsSpentWhereItMayWinEnough) {
   const Result<ChartSet> charts = charts_of_rings_and_strips();
   ASSERT_TRUE(charts.ok());
-  LayoutOptions options{.pages = 1, .page_size = 256, .padding = 1, .alignment = 1};
+  LayoutEffort options{{.pages = 1, .page_size = 256, .padding = 1, .alignment = 1}};
   options.minimum_side = 0;
   options.outlines = options.free_aspect = true;
   const std::vector<Vec2d> densities(charts->charts.size(), Vec2d{600, 600});
   const auto won = [&](double wanted_fill, double most_won) {
     options.wanted_fill = wanted_fill;
     options.most_won = most_won;
-    const Result<PageLayout> layout = lay_out_pages(*charts, densities, options, {});
+    const Result<WorkedLayout> layout = lay_out_charts({*charts, densities}, options, {});
     EXPECT_TRUE(layout.ok());
     return layout.ok() ? layout->won : -1;
   };
