@@ -5,12 +5,13 @@
 #include <limits>
 
 #include "libatlas/core/glm_bridge.h"
+#include "libatlas/core/luma.h"
 
 namespace atlas::bench {
 namespace {
 
-double luma(Vec3f e) {
-  return 0.2126 * e.x + 0.7152 * e.y + 0.0722 * e.z;
+double luma_of(Vec3f e) {
+  return luma<double>(e.x, e.y, e.z);
 }
 
 // Returns the area-weighted mean over an object's triangles.
@@ -22,7 +23,7 @@ double mean_luma(const Scene& scene, const std::vector<std::uint32_t>& triangles
     for (int k = 0; k < 3; ++k) {
       const std::uint32_t v = scene.indices[3 * t + k];
       p[k] = to_dvec(scene.positions[v]);
-      light += luma(scene.illumination[v]) / 3;
+      light += luma_of(scene.illumination[v]) / 3;
     }
     const double area = glm::length(glm::cross(p[1] - p[0], p[2] - p[0]));
     sum += area * light;
@@ -39,7 +40,7 @@ std::vector<glm::dvec3> crossings(const Scene& scene, std::uint32_t triangle, do
   for (int k = 0; k < 3; ++k) {
     const std::uint32_t a = scene.indices[3 * triangle + k];
     const std::uint32_t b = scene.indices[3 * triangle + (k + 1) % 3];
-    const double la = luma(scene.illumination[a]), lb = luma(scene.illumination[b]);
+    const double la = luma_of(scene.illumination[a]), lb = luma_of(scene.illumination[b]);
     if (std::max(la, lb) < light) continue;
     const glm::dvec3 pa = to_dvec(scene.positions[a]), pb = to_dvec(scene.positions[b]);
     if (std::abs(la - lb) <= options.drop * std::max(la, lb)) continue;

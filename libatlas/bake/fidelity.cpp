@@ -9,7 +9,9 @@
 #include <utility>
 #include <vector>
 
+#include "libatlas/core/luma.h"
 #include "libatlas/core/parallel.h"
+#include "libatlas/core/percentile.h"
 #include "libatlas/core/random.h"
 #include "libatlas/scene/triangle_area.h"
 #include "libatlas/texture/srgb.h"
@@ -41,8 +43,8 @@ Vec3f bilinear(const Image8& image, Vec2f at) {
   return {out[0], out[1], out[2]};
 }
 
-double luma(const float c[3]) {
-  return 0.2126 * c[0] + 0.7152 * c[1] + 0.0722 * c[2];
+double luma_of(const float c[3]) {
+  return luma<double>(c[0], c[1], c[2]);
 }
 
 double decibels(double mean_square) {
@@ -82,18 +84,10 @@ struct Sums {
     } else if (tone.op == ToneOperator::linear) {
       float back[3];
       for (int k = 0; k < 3; ++k) back[k] = srgb_decode(g[k]) / tone.scale;
-      const double d = luma(back) - luma(c);
+      const double d = luma_of(back) - luma_of(c);
       scene_square += d * d;
       ++scene_count;
     }
-  }
-
-  double percentile(double q) {
-    if (worst.empty()) return 0;
-    const auto at =
-        std::min(worst.size() - 1, static_cast<std::size_t>(q * static_cast<double>(worst.size())));
-    std::nth_element(worst.begin(), worst.begin() + static_cast<std::ptrdiff_t>(at), worst.end());
-    return worst[at];
   }
 
   Fidelity finish() {
@@ -105,8 +99,8 @@ struct Sums {
     const double mean = (square[0] + square[1] + square[2]) / (3 * n);
     out.psnr = decibels(mean);
     out.rmse_display = std::sqrt(mean);
-    out.p95 = percentile(0.95);
-    out.p999 = percentile(0.999);
+    out.p95 = percentile(worst, 0.95);
+    out.p999 = percentile(worst, 0.999);
     out.maximum = *std::max_element(worst.begin(), worst.end());
     return out;
   }

@@ -5,6 +5,8 @@
 #include <vector>
 
 #include "libatlas/core/is_finite.h"
+#include "libatlas/core/luma.h"
+#include "libatlas/core/percentile.h"
 #include "libatlas/scene/triangle_area.h"
 #include "libatlas/texture/tone.h"
 #include "libatlas/texture/visibility.h"
@@ -44,7 +46,7 @@ Vec3f point(const Scene& s, std::size_t t, const float b[3]) {
 struct Collector {
   LuminanceStatistics out;
   std::vector<SurfaceSample> samples;  // those of finite luminance
-  std::vector<float> peak, luma;       // largest channel and luma of the lit samples
+  std::vector<float> peak, lumas;      // largest channel and luma of the lit samples
   double sum = 0, rgb[3] = {0, 0, 0}, log_sum = 0;
   std::size_t unlit = 0;
 
@@ -61,9 +63,9 @@ struct Collector {
       ++unlit;
       return;
     }
-    const float y = 0.2126f * v[0] + 0.7152f * v[1] + 0.0722f * v[2];
+    const float y = luma(v[0], v[1], v[2]);
     peak.push_back(top);
-    luma.push_back(y);
+    lumas.push_back(y);
     sum += y;
     for (int k = 0; k < 3; ++k) rgb[k] += v[k];
     log_sum += std::log(std::max(y, 1e-37f));
@@ -74,22 +76,16 @@ struct Collector {
     out.lit_area = area_per_sample * static_cast<double>(n);
     out.unlit_area = area_per_sample * static_cast<double>(unlit);
     if (n == 0) return;
-    const auto nth = [](std::vector<float>& v, double q) {
-      const auto rank = static_cast<std::size_t>(q * static_cast<double>(v.size()));
-      const std::size_t at = std::min(v.size() - 1, rank);
-      std::nth_element(v.begin(), v.begin() + static_cast<std::ptrdiff_t>(at), v.end());
-      return static_cast<double>(v[at]);
-    };
     out.maximum = *std::max_element(peak.begin(), peak.end());
     std::vector<float> seen =
         seen_values(samples, area_per_sample * static_cast<double>(samples.size()));
     out.seen = seen.size() >= kSeenNeeded;
     std::vector<float>& values = out.seen ? seen : peak;
-    out.percentile99 = nth(values, 0.99);
-    out.percentile999 = nth(values, 0.999);
-    out.median = nth(values, 0.5);
-    out.minimum_log = std::log(nth(luma, 0.01));
-    out.maximum_log = std::log(nth(luma, 0.99));
+    out.percentile99 = percentile(values, 0.99);
+    out.percentile999 = percentile(values, 0.999);
+    out.median = percentile(values, 0.5);
+    out.minimum_log = std::log(double(percentile(lumas, 0.01)));
+    out.maximum_log = std::log(double(percentile(lumas, 0.99)));
     const auto count = static_cast<double>(n);
     out.mean = sum / count;
     out.log_average = std::exp(log_sum / count);

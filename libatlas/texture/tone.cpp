@@ -7,6 +7,8 @@
 #include <cmath>
 #include <utility>
 
+#include "libatlas/core/luma.h"
+
 namespace atlas {
 namespace {
 
@@ -16,11 +18,6 @@ constexpr std::array<std::pair<ToneOperator, std::string_view>, 4> kOperators{{
     {ToneOperator::drago, "drago"},
     {ToneOperator::reinhard_devlin, "reinhard-devlin"},
 }};
-
-// Rec. 709 weights.
-float luma(const Vec3f& c) {
-  return 0.2126f * c.x + 0.7152f * c.y + 0.0722f * c.z;
-}
 
 // A scaled channel that no curve overflows on: infinity over infinity would show the brightest
 // light black. NaN and negative ones count as 0.
@@ -140,7 +137,7 @@ std::string_view tone_operator_name(ToneOperator op) {
 Vec3f ToneMapping::map_curve(Vec3f luminance) const {
   const Vec3f c{bounded(scale * luminance.x), bounded(scale * luminance.y),
                 bounded(scale * luminance.z)};
-  const float y = luma(c);
+  const float y = luma(c.x, c.y, c.z);
   if (!(y > 0)) return {};
   if (op == ToneOperator::reinhard_devlin) {
     const float in[3] = {c.x, c.y, c.z};

@@ -12,6 +12,7 @@
 #include "libatlas/core/degrees.h"
 #include "libatlas/core/first_index.h"
 #include "libatlas/core/glm_bridge.h"
+#include "libatlas/core/luma.h"
 #include "libatlas/scene/check_scene.h"
 
 namespace atlas {
@@ -243,7 +244,7 @@ double light_scale(const std::vector<Vec3f>& illumination) {
   if (illumination.empty()) return 1;
   std::vector<float> y;
   y.reserve(illumination.size());
-  for (const Vec3f& e : illumination) y.push_back(0.2126f * e.x + 0.7152f * e.y + 0.0722f * e.z);
+  for (const Vec3f& e : illumination) y.push_back(luma(e.x, e.y, e.z));
   const auto at = y.begin() + std::ptrdiff_t(double(y.size() - 1) * 0.99);
   std::nth_element(y.begin(), at, y.end());
   return *at > 0 ? 1.0 / *at : 1.0;
