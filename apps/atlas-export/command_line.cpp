@@ -8,6 +8,7 @@
 #include "apps/common/options.h"
 #include "apps/common/program.h"
 #include "apps/common/quantity.h"
+#include "libatlas/core/counted.h"
 
 namespace atlas::app {
 namespace {
@@ -205,9 +206,9 @@ std::optional<std::string> interpret(const RawText& raw, ExportCommand& command)
     while (options.atlas_size > 64 && page() > double(*bytes)) options.atlas_size /= 2;
     if (page() > double(*bytes))
       return fmt::format(
-          "--memory {}: {} byte{}, less than the {:.0f} of a single page of 64 x 64 texels (give a "
+          "--memory {}: {}, less than the {:.0f} of a single page of 64 x 64 texels (give a "
           "size such as 800MB)",
-          raw.memory, *bytes, *bytes == 1 ? "" : "s", page());
+          raw.memory, counted(*bytes, "byte"), page());
     options.atlases = std::uint32_t(std::clamp(double(*bytes) / page(), 1.0, kMostPages));
   }
   return std::nullopt;

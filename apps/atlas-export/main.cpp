@@ -10,9 +10,9 @@
 #include "apps/common/program.h"
 #include "apps/common/terminal.h"
 #include "libatlas/core/clock.h"
+#include "libatlas/core/counted.h"
 #include "libatlas/core/file_extension.h"
 #include "libatlas/exporters/world.h"
-#include "libatlas/pipeline/bake_pages.h"
 #include "libatlas/pipeline/export_world.h"
 #include "libatlas/pipeline/plan.h"
 
@@ -35,12 +35,12 @@ void print_result(const ExportReport& report, bool kept, app::Terminal& terminal
   std::vector<Extent> plain;
   for (const PageReport& page : report.pages)
     if (report.gpu_bytes == 0) plain.push_back({page.width, page.height});
-  terminal.line(fmt::format(
-      "{}: {} triangle{} on {} page{}, {}", report.target.string(), report.triangles_out,
-      report.triangles_out == 1 ? "" : "s", pages, pages == 1 ? "" : "s",
-      plain.empty() ? fmt::format("{:.1f} MiB of graphics memory",
-                                  double(report.gpu_bytes) / (1024.0 * 1024.0))
-                    : plain_pages_text(plain)));
+  terminal.line(fmt::format("{}: {} on {}, {}", report.target.string(),
+                            counted(report.triangles_out, "triangle"), counted(pages, "page"),
+                            plain.empty()
+                                ? fmt::format("{:.1f} MiB of graphics memory",
+                                              double(report.gpu_bytes) / (1024.0 * 1024.0))
+                                : plain_pages_text(plain)));
 }
 
 // Names the pages that an earlier export to the same name, with more pages, has left: they are not
@@ -48,15 +48,10 @@ void print_result(const ExportReport& report, bool kept, app::Terminal& terminal
 void name_old_pages(const ExportReport& report, app::Terminal& terminal) {
   const std::filesystem::path folder = report.target.parent_path();
   const auto page = [&](std::size_t p) { return folder / (page_name(report.target, p) + ".png"); };
-  const std::size_t first = report.pages.size();
-  if (first == 0 || report.pages[0].image.empty()) return;
-  std::size_t end = first;
-  std::error_code error;
-  while (std::filesystem::exists(page(end), error)) ++end;
-  if (end == first) return;
-  terminal.line(fmt::format(
-      "{}{}: of an earlier export with more pages, no part of this world (may be removed)",
-      page(first).string(), end == first + 1 ? "" : " to " + page(end - 1).filename().string()));
+  if (report.pages.empty() || report.pages[0].image.empty()) return;
+  const std::vector<std::filesystem::path> old = app::files_there(report.pages.size(), page);
+  if (old.empty()) return;
+  terminal.line(app::old_pages_text(old, "export with more pages", "this world"));
 }
 
 StageReport reading_stage(const LoadedScene& loaded, double cpu, double wall) {

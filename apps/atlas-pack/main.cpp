@@ -2,7 +2,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <cstdint>
 #include <filesystem>
 #include <span>
@@ -11,6 +10,8 @@
 #include "apps/atlas-pack/commands.h"
 #include "apps/common/program.h"
 #include "libatlas/core/clock.h"
+#include "libatlas/core/counted.h"
+#include "libatlas/pack/larger_pages.h"
 
 namespace {
 
@@ -20,9 +21,7 @@ using namespace atlas;
 // that would do.
 void advise_on_pages(const app::PackCommand& command, const app::PackedAtlas& atlas,
                      const Context& context) {
-  constexpr std::size_t kMany = 64;
-  constexpr std::int32_t kCommonSide = 8192;  // textures that every graphics card takes
-  if (atlas.pages.size() <= kMany) return;
+  if (atlas.pages.size() <= kManyPages) return;
   double texels = 0;
   std::int32_t largest = 1;
   for (const Extent& page : atlas.pages) {
@@ -30,15 +29,13 @@ void advise_on_pages(const app::PackCommand& command, const app::PackedAtlas& at
     largest = std::max({largest, page.width, page.height});
   }
   if (largest > kCommonSide / 2) return;
-  std::int32_t side = 2 * largest;
-  const auto count = [&] { return std::int64_t(std::ceil(texels / (double(side) * side))); };
-  while (side <= kCommonSide / 2 && count() > std::int64_t(kMany) / 2) side *= 2;
+  const auto [side, count] = larger_pages(texels, 2 * largest);
   const std::string wanted = command.kind == app::PackCommand::Kind::mesh
-                                 ? fmt::format("--page {} --pages {}", side, count())
+                                 ? fmt::format("--page {} --pages {}", side, count)
                                  : fmt::format("--page {0}x{0}", side);
   context.say(fmt::format(
       "{} pages, each a texture of its own, are slow to load and to draw ({} takes about {})",
-      atlas.pages.size(), wanted, count()));
+      atlas.pages.size(), wanted, count));
 }
 
 // Warns of a mostly empty page: sprites rarely need a page of 2048 x 2048.
@@ -54,9 +51,9 @@ void advise_on_room(const app::PackCommand& command, const app::PackedAtlas& atl
 // "3 items on 1 page", "2 of 3 items on 1 page".
 std::string counts_of(const app::PackedAtlas& atlas) {
   const std::size_t items = atlas.items.size(), pages = atlas.pages.size();
-  return fmt::format("{}{} item{} on {} page{}",
-                     atlas.unplaced > 0 ? fmt::format("{} of ", items - atlas.unplaced) : "", items,
-                     items == 1 ? "" : "s", pages, pages == 1 ? "" : "s");
+  return fmt::format("{}{} on {}",
+                     atlas.unplaced > 0 ? fmt::format("{} of ", items - atlas.unplaced) : "",
+                     counted(items, "item"), counted(pages, "page"));
 }
 
 // "sheet.png, sheet.json", "sheet-0.png, sheet-0.json, ... sheet-8.json".

@@ -12,6 +12,7 @@
 #include "apps/atlas-pack/uv_charts.h"
 #include "apps/common/files.h"
 #include "libatlas/core/atomic_file.h"
+#include "libatlas/core/counted.h"
 #include "libatlas/core/file_extension.h"
 #include "libatlas/pack/fit.h"
 #include "libatlas/scene/reader.h"
@@ -178,12 +179,11 @@ Result<FitResult> fit_charts(const PackCommand& c, std::span<const FitItem> item
   if (!fitted.ok() && fitted.status().code() == ErrorCode::no_solution)
     return Status(
         ErrorCode::no_solution,
-        fmt::format(
-            "{}: its {} charts do not fit {} page{} of {} x {} texels even as small as can be "
-            "(give a larger --page{})",
-            c.input.string(), items.size(), c.pages, c.pages == 1 ? "" : "s", c.page_side,
-            c.page_side,
-            padding > 0 ? ", more --pages or a smaller --padding" : " or more --pages"));
+        fmt::format("{}: its {} charts do not fit {} of {} x {} texels even as small as can be "
+                    "(give a larger --page{})",
+                    c.input.string(), items.size(), counted(c.pages, "page"), c.page_side,
+                    c.page_side,
+                    padding > 0 ? ", more --pages or a smaller --padding" : " or more --pages"));
   if (!fitted.ok()) return fitted.status();
   for (FitPlacement& p : fitted->placements) {
     p.offset = {p.offset.x + border, p.offset.y + border};

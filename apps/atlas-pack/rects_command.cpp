@@ -12,6 +12,7 @@
 #include "apps/atlas-pack/preview.h"
 #include "apps/common/files.h"
 #include "libatlas/core/atomic_file.h"
+#include "libatlas/core/counted.h"
 #include "libatlas/core/file_extension.h"
 
 namespace atlas::app {
@@ -111,9 +112,9 @@ Result<std::vector<CsvLine>> csv_lines(const PackCommand& c, const std::string& 
     const std::size_t n = f.size();
     if (n != 2 && n != 3)
       return bad_line(c, number,
-                      fmt::format("{} field{} (expected width,height or "
+                      fmt::format("{} (expected width,height or "
                                   "name,width,height)",
-                                  n, n == 1 ? "" : "s"));
+                                  counted(n, "field")));
     const bool header = !has_digit(f[n - 2]) && !has_digit(f[n - 1]);
     if (header && result.empty() && !std::exchange(header_seen, true)) continue;
     result.push_back({number, std::move(f)});

@@ -178,18 +178,14 @@ std::string page_image(const PackCommand& c, std::size_t page, std::size_t pages
 // Names the pages that an earlier run to the same name, with more or fewer pages, has left: they
 // are not part of this atlas.
 void name_old_pages(const PackCommand& c, std::size_t pages, const Context& context) {
-  const auto there = [&](const std::string& image) {
-    std::error_code error;
-    return fs::exists(c.output.parent_path() / image, error);
-  };
-  std::vector<std::string> old;
-  if (pages > 1 && there(page_image(c, 0, 1))) old.push_back(page_image(c, 0, 1));
-  for (std::size_t p = pages == 1 ? 0 : pages; there(page_image(c, p, 2)); ++p)
-    old.push_back(page_image(c, p, 2));
+  const fs::path folder = c.output.parent_path();
+  std::vector<fs::path> old = files_there(
+      pages == 1 ? 0 : pages, [&](std::size_t p) { return folder / page_image(c, p, 2); });
+  std::error_code error;
+  const fs::path single = folder / page_image(c, 0, 1);
+  if (pages > 1 && fs::exists(single, error)) old.insert(old.begin(), single);
   if (old.empty()) return;
-  context.say(fmt::format(
-      "{}{}: of an earlier run with other pages, no part of this atlas (may be removed)",
-      (c.output.parent_path() / old.front()).string(), old.size() == 1 ? "" : " to " + old.back()));
+  context.say(old_pages_text(old, "run with other pages", "this atlas"));
 }
 
 // Returns whether a path lies in a folder, after following links.

@@ -79,4 +79,19 @@ Result<std::string> read_text(const fs::path& path, const Context& context) {
   return text;
 }
 
+std::vector<fs::path> files_there(std::size_t first,
+                                  const std::function<fs::path(std::size_t)>& name) {
+  std::vector<fs::path> there;
+  std::error_code error;
+  for (std::size_t k = first; fs::exists(name(k), error); ++k) there.push_back(name(k));
+  return there;
+}
+
+std::string old_pages_text(std::span<const fs::path> pages, std::string_view run,
+                           std::string_view whole) {
+  const std::string last = pages.size() == 1 ? "" : " to " + pages.back().filename().string();
+  return fmt::format("{}{}: of an earlier {}, no part of {} (may be removed)",
+                     pages.front().string(), last, run, whole);
+}
+
 }  // namespace atlas::app

@@ -118,4 +118,8 @@ std::string safe_file_name(const std::string& text) {
   return fmt::format("{}-{:04x}", name, (hash ^ (hash >> 16)) & 0xffff);
 }
 
+std::string page_name(const std::filesystem::path& target, std::size_t page) {
+  return fmt::format("{}_{}", safe_file_name(target.stem().string()), page);
+}
+
 }  // namespace atlas

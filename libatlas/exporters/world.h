@@ -140,4 +140,8 @@ Status check_world(const World& world);
 // from any text. Texts with other characters almost always get different names.
 std::string safe_file_name(const std::string& text);
 
+// Returns the file name of a page's image without its extension: world.wrl gives world_0, world_1,
+// ...
+std::string page_name(const std::filesystem::path& target, std::size_t page);
+
 }  // namespace atlas

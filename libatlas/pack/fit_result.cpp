@@ -4,6 +4,8 @@
 
 #include <algorithm>
 
+#include "libatlas/core/counted.h"
+
 namespace atlas::pack {
 
 void write_outline(const OutlinePlace& at, const FitOptions& options, FitPlacement& out) {
@@ -51,11 +53,11 @@ double share_of_pages(double content, const FitResult& result) {
 }
 
 Status no_room(std::size_t charts, const FitOptions& options) {
-  return {ErrorCode::no_solution,
-          fmt::format("fit: {} charts do not fit {} page{} of {} x {} even at their minimum sides "
-                      "(allow more or larger pages, or a smaller minimum_side or padding)",
-                      charts, options.pages, options.pages == 1 ? "" : "s", options.page_size,
-                      options.page_size)};
+  return {
+      ErrorCode::no_solution,
+      fmt::format("fit: {} charts do not fit {} of {} x {} even at their minimum sides "
+                  "(allow more or larger pages, or a smaller minimum_side or padding)",
+                  charts, counted(options.pages, "page"), options.page_size, options.page_size)};
 }
 
 }  // namespace atlas::pack

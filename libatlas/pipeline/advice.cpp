@@ -2,17 +2,13 @@
 
 #include <fmt/format.h>
 
-#include <cmath>
-#include <cstdint>
+#include <cstddef>
 
+#include "libatlas/pack/larger_pages.h"
 #include "libatlas/scene/named_materials.h"
 
 namespace atlas {
 namespace {
-
-// The paper's scenes have about 50 pages, and a cabin of three million triangles has 39.
-constexpr std::size_t kManyPages = 64;
-constexpr std::int32_t kCommonSide = 8192;  // side of textures that every graphics card supports
 
 double page_texels(const ExportReport& report) {
   double texels = 0;
@@ -21,14 +17,11 @@ double page_texels(const ExportReport& report) {
 }
 
 std::string on_many_pages(const ExportReport& report, const ExportOptions& options) {
-  const double texels = page_texels(report);
-  std::int32_t side = options.atlas_size;
-  const auto count = [&] { return std::int64_t(std::ceil(texels / (double(side) * side))); };
-  while (side < kCommonSide && count() > std::int64_t(kManyPages) / 2) side *= 2;
+  const LargerPages wanted = larger_pages(page_texels(report), options.atlas_size);
   const std::string larger =
-      side > options.atlas_size
+      wanted.side > options.atlas_size
           ? fmt::format("ExportOptions::atlas_size {} ExportOptions::atlases {} holds as much; ",
-                        side, count())
+                        wanted.side, wanted.count)
           : "";
   return fmt::format(
       "{} charts on {} pages of {} x {}: viewers load and draw every page by itself, which so many "

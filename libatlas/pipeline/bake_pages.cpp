@@ -176,10 +176,6 @@ class PageBaker {
 
 }  // namespace
 
-std::string page_name(const std::filesystem::path& target, std::size_t page) {
-  return fmt::format("{}_{}", safe_file_name(target.stem().string()), page);
-}
-
 Result<BakedPages> bake_pages(const PagesToBake& pages, AtomicFiles& files,
                               const Context& context) {
   return PageBaker(pages, files, context).run();

@@ -28,10 +28,6 @@ struct BakedPages {
   double bake_wall = 0, write_wall = 0, measure_wall = 0;
 };
 
-// Returns the file name of a page's image without its extension: world.wrl gives world_0, world_1,
-// ...
-std::string page_name(const std::filesystem::path& target, std::size_t page);
-
 // The light, where its charts lie, and how to bake and write it. All of it must outlive the call.
 struct PagesToBake {
   const ChartLight& light;

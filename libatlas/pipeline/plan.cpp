@@ -7,8 +7,9 @@
 
 #include "libatlas/bake/placement.h"
 #include "libatlas/core/atomic_file.h"
+#include "libatlas/core/counted.h"
 #include "libatlas/core/degrees.h"
-#include "libatlas/pipeline/bake_pages.h"
+#include "libatlas/exporters/world.h"
 #include "libatlas/scene/triangle_area.h"
 #include "libatlas/texture/luminance.h"
 
@@ -72,7 +73,7 @@ double estimate_texels(const Scene& scene, const ExportPlan& plan, const ExportO
 }
 
 std::string budget_text(std::uint32_t pages, std::int32_t side) {
-  return fmt::format("{} page{} of {}²", pages, pages == 1 ? "" : "s", side);
+  return fmt::format("{} of {}²", counted(pages, "page"), side);
 }
 
 std::string charts_reason(const ChartOptions& charts) {

@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <string>
 
+#include "libatlas/core/counted.h"
 #include "libatlas/scene/scene.h"
 
 namespace atlas {
@@ -19,8 +20,7 @@ struct NamedMaterials {
     if (count++ == 0) first = material.name;
   }
   std::string text() const {
-    return fmt::format("{} material{} ('{}'{})", count, count == 1 ? "" : "s", first,
-                       count == 1 ? "" : ", ...");
+    return fmt::format("{} ('{}'{})", counted(count, "material"), first, count == 1 ? "" : ", ...");
   }
 };
 

@@ -13,10 +13,13 @@
 #include <tuple>
 #include <utility>
 
+#include "libatlas/core/counted.h"
 #include "libatlas/core/drop_rounding.h"
 #include "libatlas/core/file_extension.h"
 #include "libatlas/core/image.h"
+#include "libatlas/core/luma.h"
 #include "libatlas/core/parse_number.h"
+#include "libatlas/core/percentile.h"
 #include "libatlas/core/random.h"
 #include "libatlas/core/text_buffer.h"
 #include "libatlas/core/text_hash.h"
@@ -213,6 +216,28 @@ TEST(ImageSides, ThatNoMemoryHoldsAreNotWhole) {
   image.width = image.height = 1 << 30;
   image.channels = 16;
   EXPECT_FALSE(image.whole());
+}
+
+TEST(Percentile, IsTheValueBelowWhichAShareLies) {
+  std::vector<int> values{7, 1, 9, 3, 5, 8, 0, 2, 6, 4};
+  EXPECT_EQ(percentile(values, 0), 0);
+  EXPECT_EQ(percentile(values, 0.5), 5);
+  EXPECT_EQ(percentile(values, 0.99), 9);
+  EXPECT_EQ(percentile(values, 1), 9);
+  std::vector<float> one{2};
+  EXPECT_EQ(percentile(one, 0.5), 2);
+}
+
+TEST(Luma, WeighsChannelsInThePrecisionAskedFor) {
+  EXPECT_EQ(luma(1.0f, 0.0f, 0.0f), 0.2126f);
+  EXPECT_EQ(luma(0.0f, 1.0f, 0.0f), 0.7152f);
+  EXPECT_EQ(luma(0.0, 0.0, 1.0), 0.0722);
+}
+
+TEST(Counted, HasAnSUnlessThereIsOne) {
+  EXPECT_EQ(counted(0, "page"), "0 pages");
+  EXPECT_EQ(counted(1, "page"), "1 page");
+  EXPECT_EQ(counted(2, "page"), "2 pages");
 }
 
 }  // namespace
