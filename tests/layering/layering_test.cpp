@@ -1,11 +1,12 @@
 // The layers of the library: a folder of libatlas/ includes only folders listed above it, public
-// headers show nothing internal and no vector types of third parties, and each header compiles on
-// its own.
+// headers show nothing internal and no vector types of third parties, each header compiles on its
+// own, and the programs include public headers.
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
+#include <map>
 #include <regex>
 #include <set>
 #include <sstream>
@@ -46,9 +47,9 @@ std::vector<Include> includes_of(const fs::path& path) {
   return result;
 }
 
-std::vector<fs::path> sources(const std::string& extension) {
+std::vector<fs::path> sources(const std::string& extension, const char* folder = "libatlas") {
   std::vector<fs::path> result;
-  for (const auto& entry : fs::recursive_directory_iterator(kRoot / "libatlas"))
+  for (const auto& entry : fs::recursive_directory_iterator(kRoot / folder))
     if (entry.is_regular_file() &&
         (extension.empty() ? entry.path().extension() == ".h" || entry.path().extension() == ".cpp"
                            : entry.path().extension() == extension))
@@ -176,6 +177,37 @@ TEST(Layering, TheLibraryKnowsNobodyAboveIt) {
     for (const Include& include : includes_of(path))
       for (const char* folder : {"apps/", "tests/", "examples/", "benchmarks/"})
         EXPECT_NE(include.target.rfind(folder, 0), 0u) << place(path, include.line);
+}
+
+// Programs and examples show how the installed library is used, so they include what is installed,
+// except for what would be no use to others.
+TEST(Layering, ProgramsIncludePublicHeadersOnly) {
+  const std::map<std::string, std::string> reasons{
+      {"core/counted.h", "words of messages"},
+      {"core/counting_sort.h", "a small algorithm"},
+      {"core/disjoint_sets.h", "a small algorithm"},
+      {"core/parse_number.h", "numbers in options are read as those in files are"},
+      {"core/text_buffer.h", "numbers in OBJ are written as by the library"},
+      {"pack/larger_pages.h", "the programs advise alike"},
+      {"scene/losses.h", "the programs name what they leave out alike"},
+      {"scene/obj_names.h", "names in OBJ are written as by the library"},
+      {"scene/triangle_area.h", "a formula"},
+  };
+  std::set<std::string> used;
+  for (const char* folder : {"apps", "examples"}) {
+    for (const fs::path& path : sources("", folder)) {
+      for (const Include& include : includes_of(path)) {
+        if (include.target.rfind("libatlas/", 0) != 0) continue;
+        if (!internal(kRoot / include.target)) continue;
+        const std::string header = include.target.substr(std::string("libatlas/").size());
+        used.insert(header);
+        EXPECT_TRUE(reasons.contains(header))
+            << place(path, include.line) << ": " << include.target << " is not installed";
+      }
+    }
+  }
+  for (const auto& [header, reason] : reasons)
+    EXPECT_TRUE(used.contains(header)) << header << " needs no exception (" << reason << ")";
 }
 
 }  // namespace
