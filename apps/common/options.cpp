@@ -12,7 +12,6 @@
 #include <vector>
 
 #include "apps/common/program.h"
-#include "libatlas/core/small_letters.h"
 
 namespace atlas::app {
 namespace {
@@ -123,34 +122,41 @@ std::string about_value(const CLI::App& app, const std::string& name, const std:
                      flag ? "is neither true nor false" : "not a number that it can be");
 }
 
+// Returns a complaint about an option that has too few or too many values. `text` begins with its
+// name.
+std::string about_count(const CLI::App& app, const std::string& text) {
+  const std::string name = text.substr(0, text.find(": "));
+  const CLI::Option* option = command_of(app).get_option_no_throw(name);
+  if (!option) return text;
+  const int got = static_cast<int>(option->results().size());
+  const int least = option->get_items_expected_min(), most = option->get_items_expected_max();
+  // The values so far are as many as there should be, but the option is given again without one.
+  if (got == 0 || (got >= least && got <= most)) return name + " needs a value after it";
+  if (most <= 1) return name + " is given more than once";
+  return fmt::format("{} takes {} values with commas between them, not {}", name,
+                     got < least ? least : most, got);
+}
+
+template <class Kind>
+bool is(const CLI::ParseError& error) {
+  return dynamic_cast<const Kind*>(&error) != nullptr;
+}
+
 // Returns a complaint about a parse error. Where a user would not understand CLI11's words, others
-// replace them.
+// replace them. Errors tell the name of an option by their text only.
 std::string complaint(const CLI::App& app, const CLI::ParseError& error) {
   const std::string text = error.what();
   constexpr std::string_view kConfig = "INI was not able to parse ";
-  if (text.starts_with(kConfig)) return about_config(app, text.substr(kConfig.size()));
+  if (is<CLI::ConfigError>(error) && text.starts_with(kConfig))
+    return about_config(app, text.substr(kConfig.size()));
   if (std::string unknown = about_unknown(app); !unknown.empty()) return unknown;
-  constexpr std::string_view kMissing = " missing", kCount = " required ";
-  if (const auto at = text.find(": "); text.ends_with(kMissing) && text.find(kCount) != text.npos)
-    return text.substr(0, at) + " needs a value after it";
-  // Versions of CLI11 differ in capitals.
-  const std::string small = small_letters(text);
-  constexpr std::string_view kTwice = ": at most 1 required";
-  if (const auto at = small.find(kTwice); at != std::string::npos)
-    return text.substr(0, at) + " is given more than once";
-  constexpr std::string_view kReceived = " required but received ";
-  for (const std::string_view bound : {": at least ", ": at most "})
-    if (const auto at = small.find(bound), to = small.find(kReceived);
-        at != std::string::npos && to != std::string::npos)
-      return fmt::format("{} takes {} values with commas between them, not {}", text.substr(0, at),
-                         text.substr(at + bound.size(), to - at - bound.size()),
-                         text.substr(to + kReceived.size()));
-  constexpr std::string_view kConversion = "Could not convert: ";
-  const auto equals = text.find(" = ");
-  if (text.starts_with(kConversion) && equals != std::string::npos)
-    return about_value(app, text.substr(kConversion.size(), equals - kConversion.size()),
-                       text.substr(equals + 3));
-  if (text == "A subcommand is required") return "the name of a command is needed first";
+  if (is<CLI::ArgumentMismatch>(error)) return about_count(app, text);
+  // "...: NAME = VALUE"
+  const auto colon = text.find(": "), equals = text.find(" = ");
+  if (is<CLI::ConversionError>(error) && equals != std::string::npos && colon < equals)
+    return about_value(app, text.substr(colon + 2, equals - colon - 2), text.substr(equals + 3));
+  if (is<CLI::RequiredError>(error) && lacks_command(app))
+    return "the name of a command is needed first";
   return text;
 }
 
