@@ -10,22 +10,18 @@
 #include "libatlas/charts/tiles.h"
 #include "libatlas/core/atomic_file.h"
 #include "libatlas/core/clock.h"
-#include "libatlas/core/file_extension.h"
 #include "libatlas/core/parallel.h"
-#include "libatlas/exporters/viewpoint.h"
-#include "libatlas/exporters/world.h"
 #include "libatlas/pipeline/advice.h"
 #include "libatlas/pipeline/assemble_world.h"
 #include "libatlas/pipeline/bake_pages.h"
-#include "libatlas/pipeline/draw_once.h"
 #include "libatlas/pipeline/fill_pages.h"
 #include "libatlas/pipeline/layout_options.h"
 #include "libatlas/pipeline/light_seams.h"
 #include "libatlas/pipeline/longest_sides.h"
-#include "libatlas/pipeline/one_sided.h"
 #include "libatlas/pipeline/page_layout.h"
 #include "libatlas/pipeline/part_gaps.h"
 #include "libatlas/pipeline/stage_recorder.h"
+#include "libatlas/pipeline/write_export.h"
 #include "libatlas/scene/check_scene.h"
 #include "libatlas/scene/uv_page.h"
 #include "libatlas/simplify/simplify.h"
@@ -308,79 +304,13 @@ class Export {
 
   Status write() {
     const Context& context = record_.begin("writing");
-    const ChartedMesh fine(scene_.indices, charts_);
-    WorldMesh mesh = coarse_
-                         ? WorldMesh{coarse_->indices, coarse_->uv_indices, coarse_->triangle_chart}
-                         : fine.view();
-    if (plan_.bake) mesh.one_sided = one_sided_triangles(scene_, charts_, mesh, context);
-    if (context.cancelled()) return Status::cancelled();
-    report_.triangles_out = mesh.triangle_chart.size();
-    const World world = make_world(mesh, context);
-    Result<WorldFile> world_file = write_world(world, options_.target, files_, context);
-    if (!world_file.ok()) return world_file.status();
-    report_.not_kept = world_file->not_kept;
-    if (lower_extension(options_.target) == ".glb") {  // embeds its images
-      for (const auto& image : image_sources_) files_.discard(image);
-      for (PageReport& page : report_.pages) page.image.clear();
-    }
-    if (context.cancelled()) return Status::cancelled();
-    std::uint64_t bytes = 0;
-    if (Status s = commit_files(bytes); !s.ok()) return s;
-    record_.finish({report_.triangles_out, bytes, "bytes", writing_note(*world_file)});
+    const ExportToWrite made{
+        scene_,     options_,      charts_, layout_, coarse_ ? &*coarse_ : nullptr,
+        plan_.bake, image_sources_};
+    Result<StageOutcome> written = write_export(made, files_, report_, context);
+    if (!written.ok()) return written.status();
+    record_.finish(std::move(*written));
     return {};
-  }
-
-  World make_world(const WorldMesh& mesh, const Context& context) {
-    const PlacedCharts placed{charts_, layout_.placements, layout_.pages};
-    AssembledWorld assembled = assemble_world(scene_, placed, mesh, plan_.bake);
-    World world = std::move(assembled.world);
-    report_.thin_triangles = assembled.thin_triangles;
-    if (!plan_.bake) {
-      // After a move, the texels that a chart owns for its mip levels would reach a texel further.
-      const DrawnTwice drawn = options_.plain_mip_levels == 0
-                                   ? draw_once(placed, mesh.uv_indices, world.uvs, context)
-                                   : drawn_twice(placed, mesh.uv_indices, world.uvs, context);
-      report_.texels_drawn_twice = drawn.after;
-      world.info.push_back(plain_pages_text(layout_.pages));
-    }
-    world.up = options_.up;
-    world.title = options_.target.stem().string();
-    world.metres_per_unit = scene_.metres_per_unit;
-    if (options_.keep_scene) {
-      keep_scene(scene_, charts_, world);
-    } else if (holds_viewpoint(options_.target)) {
-      ViewpointOptions eye;
-      eye.up = options_.up;
-      eye.metres_per_unit = scene_.metres_per_unit;
-      world.viewpoint = choose_viewpoint(scene_.positions, scene_.indices, eye, context);
-    }
-    for (std::size_t p = 0; p < image_sources_.size(); ++p) {
-      world.pages[p].image = report_.pages[p].image;
-      world.pages[p].image_source = image_sources_[p];
-    }
-    return world;
-  }
-
-  // Gives all files their names, and adds their sizes to the report and up to `bytes`.
-  Status commit_files(std::uint64_t& bytes) {
-    const std::vector<std::filesystem::path> written = files_.targets();
-    if (Status s = files_.commit(); !s.ok()) return s;
-    for (const auto& path : written) {
-      std::error_code error;
-      const auto size = std::filesystem::file_size(path, error);
-      report_.files.emplace_back(path.filename().string(), error ? 0 : size);
-      bytes += report_.files.back().second;
-    }
-    return {};
-  }
-
-  std::string writing_note(const WorldFile& written) const {
-    const Vec3d& left_out = written.origin_left_out;
-    if (options_.keep_scene)
-      return fmt::format("its objects: {}, materials: {}; the new uvs: {}",
-                         scene_.object_names.size(), scene_.materials.size(), written.uv_set);
-    if (left_out == Vec3d{}) return "";
-    return fmt::format("relative to {} {} {}", left_out.x, left_out.y, left_out.z);
   }
 
   const Scene& scene_;

@@ -1,0 +1,101 @@
+#include "libatlas/pipeline/write_export.h"
+
+#include <fmt/format.h>
+
+#include <cstdint>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "libatlas/core/file_extension.h"
+#include "libatlas/exporters/viewpoint.h"
+#include "libatlas/exporters/world.h"
+#include "libatlas/pipeline/assemble_world.h"
+#include "libatlas/pipeline/draw_once.h"
+#include "libatlas/pipeline/export_world.h"
+#include "libatlas/pipeline/one_sided.h"
+
+namespace atlas {
+namespace {
+
+World make_world(const ExportToWrite& made, const WorldMesh& mesh, ExportReport& report,
+                 const Context& context) {
+  const ExportOptions& options = made.options;
+  const PlacedCharts placed{made.charts, made.layout.placements, made.layout.pages};
+  AssembledWorld assembled = assemble_world(made.scene, placed, mesh, made.baked);
+  World world = std::move(assembled.world);
+  report.thin_triangles = assembled.thin_triangles;
+  if (!made.baked) {
+    // After a move, the texels that a chart owns for its mip levels would reach a texel further.
+    const DrawnTwice drawn = options.plain_mip_levels == 0
+                                 ? draw_once(placed, mesh.uv_indices, world.uvs, context)
+                                 : drawn_twice(placed, mesh.uv_indices, world.uvs, context);
+    report.texels_drawn_twice = drawn.after;
+    world.info.push_back(plain_pages_text(made.layout.pages));
+  }
+  world.up = options.up;
+  world.title = options.target.stem().string();
+  world.metres_per_unit = made.scene.metres_per_unit;
+  if (options.keep_scene) {
+    keep_scene(made.scene, made.charts, world);
+  } else if (holds_viewpoint(options.target)) {
+    ViewpointOptions eye;
+    eye.up = options.up;
+    eye.metres_per_unit = made.scene.metres_per_unit;
+    world.viewpoint = choose_viewpoint(made.scene.positions, made.scene.indices, eye, context);
+  }
+  for (std::size_t p = 0; p < made.image_sources.size(); ++p) {
+    world.pages[p].image = report.pages[p].image;
+    world.pages[p].image_source = made.image_sources[p];
+  }
+  return world;
+}
+
+// Gives all files their names, and adds their sizes to the report and up to `bytes`.
+Status commit_files(AtomicFiles& files, ExportReport& report, std::uint64_t& bytes) {
+  const std::vector<std::filesystem::path> written = files.targets();
+  if (Status s = files.commit(); !s.ok()) return s;
+  for (const auto& path : written) {
+    std::error_code error;
+    const auto size = std::filesystem::file_size(path, error);
+    report.files.emplace_back(path.filename().string(), error ? 0 : size);
+    bytes += report.files.back().second;
+  }
+  return {};
+}
+
+std::string writing_note(const ExportToWrite& made, const WorldFile& written) {
+  const Vec3d& left_out = written.origin_left_out;
+  if (made.options.keep_scene)
+    return fmt::format("its objects: {}, materials: {}; the new uvs: {}",
+                       made.scene.object_names.size(), made.scene.materials.size(), written.uv_set);
+  if (left_out == Vec3d{}) return "";
+  return fmt::format("relative to {} {} {}", left_out.x, left_out.y, left_out.z);
+}
+
+}  // namespace
+
+Result<StageOutcome> write_export(const ExportToWrite& made, AtomicFiles& files,
+                                  ExportReport& report, const Context& context) {
+  const ChartedMesh fine(made.scene.indices, made.charts);
+  WorldMesh mesh = made.coarse ? WorldMesh{made.coarse->indices, made.coarse->uv_indices,
+                                           made.coarse->triangle_chart}
+                               : fine.view();
+  if (made.baked) mesh.one_sided = one_sided_triangles(made.scene, made.charts, mesh, context);
+  if (context.cancelled()) return Status::cancelled();
+  report.triangles_out = mesh.triangle_chart.size();
+  const World world = make_world(made, mesh, report, context);
+  Result<WorldFile> world_file = write_world(world, made.options.target, files, context);
+  if (!world_file.ok()) return world_file.status();
+  report.not_kept = world_file->not_kept;
+  if (lower_extension(made.options.target) == ".glb") {  // embeds its images
+    for (const auto& image : made.image_sources) files.discard(image);
+    for (PageReport& page : report.pages) page.image.clear();
+  }
+  if (context.cancelled()) return Status::cancelled();
+  std::uint64_t bytes = 0;
+  if (Status s = commit_files(files, report, bytes); !s.ok()) return s;
+  return StageOutcome{report.triangles_out, bytes, "bytes", writing_note(made, *world_file)};
+}
+
+}  // namespace atlas

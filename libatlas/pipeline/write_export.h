@@ -1,0 +1,36 @@
+// Internal: the last stage of an export, which makes the world and writes it.
+#pragma once
+
+#include <filesystem>
+#include <span>
+
+#include "libatlas/core/atomic_file.h"
+#include "libatlas/core/context.h"
+#include "libatlas/core/status.h"
+#include "libatlas/pipeline/export_options.h"
+#include "libatlas/pipeline/page_layout.h"
+#include "libatlas/pipeline/stage_recorder.h"
+#include "libatlas/report/export_report.h"
+#include "libatlas/scene/scene.h"
+#include "libatlas/simplify/simplify.h"
+
+namespace atlas {
+
+// The results of the stages before. All of them must outlive the call.
+struct ExportToWrite {
+  const Scene& scene;
+  const ExportOptions& options;
+  const ChartSet& charts;
+  const PageLayout& layout;
+  const SimplifiedMesh* coarse = nullptr;  // null: the scene's own triangles are written
+  bool baked = false;                      // the pages hold light
+  // One per page with an image: where it lies until the files are committed.
+  std::span<const std::filesystem::path> image_sources = {};
+};
+
+// Writes the world and commits `files`, which hold the pages' images. Adds to the report what was
+// written, and what the format had no room for. Errors: bad_input, io, cancelled.
+Result<StageOutcome> write_export(const ExportToWrite& made, AtomicFiles& files,
+                                  ExportReport& report, const Context& context);
+
+}  // namespace atlas
