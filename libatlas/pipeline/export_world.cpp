@@ -20,16 +20,16 @@
 #include "libatlas/pipeline/draw_once.h"
 #include "libatlas/pipeline/fill_pages.h"
 #include "libatlas/pipeline/layout_options.h"
-#include "libatlas/pipeline/light_seams.h"
 #include "libatlas/pipeline/longest_sides.h"
-#include "libatlas/pipeline/one_sided.h"
 #include "libatlas/pipeline/page_layout.h"
 #include "libatlas/pipeline/part_gaps.h"
 #include "libatlas/pipeline/stage_recorder.h"
 #include "libatlas/scene/check_scene.h"
 #include "libatlas/scene/uv_page.h"
+#include "libatlas/sheets/one_sided.h"
 #include "libatlas/simplify/simplify.h"
 #include "libatlas/texture/chart_textures.h"
+#include "libatlas/texture/light_seams.h"
 
 namespace atlas {
 namespace {

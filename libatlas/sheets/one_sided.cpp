@@ -1,4 +1,4 @@
-#include "libatlas/pipeline/one_sided.h"
+#include "libatlas/sheets/one_sided.h"
 
 #include <algorithm>
 #include <array>
@@ -9,10 +9,11 @@
 #include <numeric>
 #include <utility>
 
+#include "libatlas/charts/chart_triangles.h"
 #include "libatlas/core/counting_sort.h"
 #include "libatlas/core/glm_bridge.h"
 #include "libatlas/core/parallel.h"
-#include "libatlas/pipeline/triangle_tree.h"
+#include "libatlas/sheets/triangle_tree.h"
 
 namespace atlas {
 namespace {
@@ -238,7 +239,7 @@ class Transfer {
   // Sets those of the chart's written triangles (`triangles`) that belong to a layer.
   void chart(std::uint32_t chart, const WorldMesh& written,
              std::span<const std::uint32_t> triangles, std::vector<std::uint8_t>& to) const {
-    const std::span<const std::uint32_t> fine = fine_triangles(chart);
+    const std::span<const std::uint32_t> fine = triangles_of(charts_, charts_.charts[chart]);
     const auto in_layer = [&](std::uint32_t t) { return layers_[t] != 0; };
     if (std::none_of(fine.begin(), fine.end(), in_layer)) return;
     const TriangleTree tree(uvs_, charts_.triangle_uv, {fine.begin(), fine.end()});
@@ -247,11 +248,6 @@ class Transfer {
   }
 
  private:
-  std::span<const std::uint32_t> fine_triangles(std::uint32_t chart) const {
-    const Chart& c = charts_.charts[chart];
-    return std::span(charts_.chart_triangles).subspan(c.first_triangle, c.triangle_count);
-  }
-
   Corners corners(const std::uint32_t* uv) const {
     const auto at = [&](std::uint32_t i) {
       return glm::dvec3(charts_.uvs[i].x, charts_.uvs[i].y, 0);

@@ -1,4 +1,4 @@
-#include "libatlas/pipeline/triangle_tree.h"
+#include "libatlas/sheets/triangle_tree.h"
 
 #include <glm/common.hpp>
 #include <limits>
