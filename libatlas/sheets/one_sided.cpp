@@ -4,12 +4,11 @@
 #include <array>
 #include <cmath>
 #include <glm/trigonometric.hpp>
-#include <glm/vector_relational.hpp>
-#include <limits>
 #include <numeric>
 #include <utility>
 
 #include "libatlas/charts/chart_triangles.h"
+#include "libatlas/core/bounds.h"
 #include "libatlas/core/counting_sort.h"
 #include "libatlas/core/glm_bridge.h"
 #include "libatlas/core/parallel.h"
@@ -66,24 +65,12 @@ struct Corners {
   }
 };
 
-struct Box {
-  glm::dvec3 low{std::numeric_limits<double>::max()}, high{-std::numeric_limits<double>::max()};
-
-  void add(const Vec3f& p) {
-    low = glm::min(low, to_dvec(p));
-    high = glm::max(high, to_dvec(p));
-  }
-  // Returns whether the boxes are within `reach` of each other along all axes.
-  bool meets(const Box& other, double reach) const {
-    return glm::all(glm::lessThanEqual(low, other.high + reach)) &&
-           glm::all(glm::lessThanEqual(other.low, high + reach));
-  }
-};
+using Box = Bounds<glm::dvec3>;
 
 double size_of(std::span<const Vec3f> positions) {
   Box box;
-  for (const Vec3f& p : positions) box.add(p);
-  return positions.empty() ? 0 : glm::distance(box.low, box.high);
+  for (const Vec3f& p : positions) box.add(to_dvec(p));
+  return positions.empty() ? 0 : glm::length(box.size());
 }
 
 // Returns whether some normal of one chart may be opposite to one of the other. The cones of
@@ -110,7 +97,7 @@ class Candidates {
         boxes_(charts.charts.size()),
         partners_(charts.charts.size()) {
     for (std::size_t k = 0; k < indices.size(); ++k)
-      boxes_[charts.triangle_chart[k / 3]].add(positions[indices[k]]);
+      boxes_[charts.triangle_chart[k / 3]].add(to_dvec(positions[indices[k]]));
     all_ = !find_partners();
   }
 
