@@ -58,7 +58,7 @@ double least_gap(const Flat& flat, double far) {
   param::HalfEdges half_edges;
   half_edges.build(flat.disc.view());
   for (std::uint32_t h = 0; h < 3 * flat.disc.triangles.size(); ++h) {
-    if (half_edges.opposite(h) != param::HalfEdges::none) continue;
+    if (half_edges.opposite(h) != kNoIndex) continue;
     const std::uint32_t a = half_edges.from(h), b = half_edges.to(h);
     for (const double t : {0.0, 0.25, 0.5, 0.75}) {
       const auto mix = [t](double x, double y) { return x + t * (y - x); };

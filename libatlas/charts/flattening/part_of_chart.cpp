@@ -88,7 +88,7 @@ std::vector<std::vector<std::uint32_t>> connected_parts(const FlatChart& whole,
     for (std::size_t k = 0; k < part.size(); ++k) {
       for (std::uint32_t h = 3 * part[k]; h < 3 * part[k] + 3; ++h) {
         const std::uint32_t o = half_edges.opposite(h);
-        if (o != param::HalfEdges::none && !std::exchange(seen[o / 3], 1)) part.push_back(o / 3);
+        if (o != kNoIndex && !std::exchange(seen[o / 3], 1)) part.push_back(o / 3);
       }
     }
     std::sort(part.begin(), part.end());

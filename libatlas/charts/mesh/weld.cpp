@@ -42,7 +42,7 @@ WeldedVertices weld_vertices(std::span<const Vec3f> positions, std::span<const s
     const Vec3f p{drop_rounding(at.x, size), drop_rounding(at.y, size), drop_rounding(at.z, size)};
     std::uint32_t& point = first.find(hash_words<3>({word_of(p.x), word_of(p.y), word_of(p.z)}),
                                       [&](std::uint32_t i) { return welded.points[i] == p; });
-    if (point == FirstIndex::kNone) {
+    if (point == kNoIndex) {
       point = static_cast<std::uint32_t>(welded.source.size());
       welded.source.push_back(v);
       welded.points.push_back(p);
