@@ -323,25 +323,30 @@ std::size_t end_of_batch(const std::vector<Chart>& charts, std::size_t first) {
   return end;
 }
 
+Status check(const MeshView& mesh, const TileLimits& limits, const ChartSet& charts) {
+  const std::vector<Chart>& old = charts.charts;
+  if (limits.sides.size() != old.size())
+    return {ErrorCode::bad_input,
+            fmt::format("tiles: {} limits for {} charts", limits.sides.size(), old.size())};
+  for (std::size_t c = 0; c < old.size(); ++c) {
+    if (!(limits.sides[c] > 0) && old[c].size.x > 0)
+      return {ErrorCode::bad_input,
+              fmt::format("tiles: the limit of chart {} is {} (above 0)", c, limits.sides[c])};
+  }
+  if (charts.triangle_uv.size() != mesh.indices.size())
+    return {ErrorCode::bad_input, "tiles: the charts are not those of the mesh"};
+  if (!(limits.max_stretch > 1))
+    return {ErrorCode::bad_option,
+            fmt::format("tiles: max_stretch is {} (above 1)", limits.max_stretch)};
+  return {};
+}
+
 }  // namespace
 
 Result<std::size_t> cut_to_limits(const MeshView& mesh, const TileLimits& limits, ChartSet& charts,
                                   const Context& context) {
+  if (Status s = check(mesh, limits, charts); !s.ok()) return s;
   const std::vector<Chart>& old = charts.charts;
-  if (limits.sides.size() != old.size())
-    return Status(ErrorCode::bad_input,
-                  fmt::format("tiles: {} limits for {} charts", limits.sides.size(), old.size()));
-  for (std::size_t c = 0; c < old.size(); ++c) {
-    if (!(limits.sides[c] > 0) && old[c].size.x > 0)
-      return Status(
-          ErrorCode::bad_input,
-          fmt::format("tiles: the limit of chart {} is {} (above 0)", c, limits.sides[c]));
-  }
-  if (charts.triangle_uv.size() != mesh.indices.size())
-    return Status(ErrorCode::bad_input, "tiles: the charts are not those of the mesh");
-  if (!(limits.max_stretch > 1))
-    return Status(ErrorCode::bad_option,
-                  fmt::format("tiles: max_stretch is {} (above 1)", limits.max_stretch));
   const auto too_long = [&](std::size_t c) { return old[c].size.x > limits.sides[c]; };
   std::size_t first = 0;
   while (first < old.size() && !too_long(first)) ++first;

@@ -296,20 +296,19 @@ class ChartJob {
   }
 
   ParamResult solve(const LocalMesh& mesh) {
+    ParamWorkspace& workspace = scratch_.workspace;
     param::FlattenOptions options = flatten_options(mesh.triangles.size());
     if (!kept_uvs_.empty() && place_newcomers(mesh, kept_uvs_, start_uvs_)) {
       options.aimed_stretch = 0;  // it has been squeezed before
-      return param::resume_flattening(mesh, start_uvs_, options, scratch_.workspace);
+      return param::resume_flattening(mesh, start_uvs_, options, workspace);
     }
     if (!task_.joined.empty())
-      return param::join_flat_parts(mesh, {task_.joined, task_.little}, options,
-                                    scratch_.workspace);
-    if (!input_.frames.empty()) {
+      return param::join_flat_parts(mesh, {task_.joined, task_.little}, options, workspace);
+    if (!input_.frames.empty())
       options.start.frames = [this](std::size_t i) {
         return input_.frames.at(input_.topology, chart_.triangles()[i]);
       };
-    }
-    return param::flatten_disc(mesh, options, scratch_.workspace);
+    return param::flatten_disc(mesh, options, workspace);
   }
 
   // Lays a chart that unrolls flat, without calling the solver. Returns false if it does not
