@@ -8,12 +8,12 @@
 #include "libatlas/bake/chart_box.h"
 #include "libatlas/bake/ownership.h"
 #include "libatlas/charts/chart_triangles.h"
+#include "libatlas/core/no_index.h"
 #include "libatlas/core/parallel.h"
 
 namespace atlas {
 namespace {
 
-constexpr std::uint32_t kNone = 0xffffffffu;
 constexpr std::uint8_t kOne = 1, kSeveral = 2;  // values of `taken`
 
 class OwnerFinder {
@@ -119,13 +119,13 @@ class OwnerFinder {
     std::stable_sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
       return placements_[a].chart < placements_[b].chart;
     });
-    std::vector<std::uint32_t> owner(out_.taken.size(), kNone);
+    std::vector<std::uint32_t> owner(out_.taken.size(), kNoIndex);
     std::vector<std::uint16_t> nearest(out_.taken.size(), 0);
     for (const std::uint32_t i : order) {
       std::size_t k = 0;
       each_contested(i, [&](std::size_t at) {
         const std::uint16_t d = distance[i][k++];
-        if (owner[at] != kNone && d >= nearest[at]) return;
+        if (owner[at] != kNoIndex && d >= nearest[at]) return;
         owner[at] = i;
         nearest[at] = d;
       });

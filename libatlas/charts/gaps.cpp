@@ -1,5 +1,7 @@
 #include "libatlas/charts/gaps.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -55,7 +57,7 @@ Flat flat_chart(const MeshView& mesh, const ChartSet& set, const Chart& chart) {
 Widened widen(const MeshView& mesh, const WidenOptions& options, ChartSet& set, Chart& chart) {
   Flat flat = flat_chart(mesh, set, chart);
   if (flat.corners.empty()) return {};
-  const Widened widened = widen_gaps(flat.mesh(), options, flat.uvs);
+  const Widened widened = widen_mesh_gaps(flat.mesh(), options, flat.uvs);
   if (!widened.moved) return widened;
   const double scale = area_preserving_scale(widened.distortion);
   for (Vec2d& p : flat.uvs) p = {scale * p.x, scale * p.y};
@@ -67,12 +69,20 @@ Widened widen(const MeshView& mesh, const WidenOptions& options, ChartSet& set, 
   return widened;
 }
 
+Status check(const MeshView& mesh, std::span<const double> clearance, const ChartSet& charts) {
+  if (clearance.size() != charts.charts.size())
+    return {ErrorCode::bad_input, fmt::format("gaps: {} clearances for {} charts", clearance.size(),
+                                              charts.charts.size())};
+  if (charts.triangle_uv.size() != mesh.indices.size())
+    return {ErrorCode::bad_input, "gaps: the charts are not those of the mesh"};
+  return {};
+}
+
 // Calls look(c) for every chart that has a clearance and is large enough for it. Returns the sums
 // of the results.
 template <class Look>
 GapReport look_at_all(const ChartSet& charts, std::span<const double> clearance,
                       const Context& context, const Look& look) {
-  if (clearance.size() != charts.charts.size()) return {};
   std::vector<Widened> found(clearance.size());
   parallel_for(context, found.size(), 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t c = begin; c < end; ++c) {
@@ -93,18 +103,24 @@ GapReport look_at_all(const ChartSet& charts, std::span<const double> clearance,
 
 }  // namespace
 
-GapReport measure_gaps(const MeshView& mesh, std::span<const double> clearance,
-                       const ChartSet& charts, const Context& context) {
-  if (charts.triangle_uv.size() != mesh.indices.size()) return {};
-  return look_at_all(charts, clearance, context, [&](std::size_t c) {
+Result<GapReport> measure_gaps(const MeshView& mesh, std::span<const double> clearance,
+                               const ChartSet& charts, const Context& context) {
+  if (Status s = check(mesh, clearance, charts); !s.ok()) return s;
+  const GapReport report = look_at_all(charts, clearance, context, [&](std::size_t c) {
     const Flat flat = flat_chart(mesh, charts, charts.charts[c]);
-    return flat.corners.empty() ? Widened{} : measure_gaps(flat.mesh(), clearance[c], flat.uvs);
+    return flat.corners.empty() ? Widened{}
+                                : measure_mesh_gaps(flat.mesh(), clearance[c], flat.uvs);
   });
+  if (context.cancelled()) return Status::cancelled();
+  return report;
 }
 
-GapReport widen_gaps(const MeshView& mesh, const GapLimits& limits, ChartSet& charts,
-                     const Context& context) {
-  if (charts.triangle_uv.size() != mesh.indices.size()) return {};
+Result<GapReport> widen_gaps(const MeshView& mesh, const GapLimits& limits, ChartSet& charts,
+                             const Context& context) {
+  if (Status s = check(mesh, limits.clearance, charts); !s.ok()) return s;
+  if (!(limits.max_stretch > 1))
+    return Status(ErrorCode::bad_option,
+                  fmt::format("gaps: max_stretch is {} (above 1)", limits.max_stretch));
   const GapReport report = look_at_all(charts, limits.clearance, context, [&](std::size_t c) {
     Chart& chart = charts.charts[c];
     if (chart.kept) return Widened{};
@@ -113,6 +129,7 @@ GapReport widen_gaps(const MeshView& mesh, const GapLimits& limits, ChartSet& ch
     return widen(mesh, options, charts, chart);
   });
   if (report.charts > 0) charts.distortion = total_distortion(charts.charts);
+  if (context.cancelled()) return Status::cancelled();
   return report;
 }
 

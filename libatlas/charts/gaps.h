@@ -6,6 +6,8 @@
 #include <span>
 
 #include "libatlas/charts/charts.h"
+#include "libatlas/core/context.h"
+#include "libatlas/core/status.h"
 
 namespace atlas {
 
@@ -27,17 +29,18 @@ struct GapLimits {
 
 // Measures how much of the charts' borders is closer than the clearance (see GapLimits) to another
 // part of the same chart, although both are far apart on the surface: more than three clearances.
-// Changes nothing. Reports nothing if there is not one clearance per chart, or if the charts have
-// not as many triangles as the mesh; neither does widen_gaps().
-GapReport measure_gaps(const MeshView& mesh, std::span<const double> clearance,
-                       const ChartSet& charts, const Context& context);
+// Changes nothing. Errors: bad_input (not one clearance per chart; charts of another mesh);
+// cancelled.
+Result<GapReport> measure_gaps(const MeshView& mesh, std::span<const double> clearance,
+                               const ChartSet& charts, const Context& context);
 
 // Widens such gaps by moving the border back on both sides, as far as the chart stays injective and
 // within limits.max_stretch (or its present stretch). Charts keep their triangles and seams; their
 // uvs, size and distortion change a little, and so does the total. Given charts (Chart::kept) are
-// not examined. If cancelled, some charts may remain unchanged. The result is the same for every
-// thread count.
-GapReport widen_gaps(const MeshView& mesh, const GapLimits& limits, ChartSet& charts,
-                     const Context& context);
+// not examined. The result is the same for every thread count. Errors: bad_input (not one clearance
+// per chart; charts of another mesh) and bad_option (max_stretch), with the charts unchanged;
+// cancelled, with some of them widened.
+Result<GapReport> widen_gaps(const MeshView& mesh, const GapLimits& limits, ChartSet& charts,
+                             const Context& context);
 
 }  // namespace atlas

@@ -13,6 +13,7 @@
 #include "libatlas/charts/filling/line_cut.h"
 #include "libatlas/charts/flattening/part_of_chart.h"
 #include "libatlas/charts/totals.h"
+#include "libatlas/core/bounds.h"
 #include "libatlas/core/glm_bridge.h"
 #include "libatlas/core/parallel.h"
 #include "libatlas/param/halfedges.h"
@@ -26,25 +27,17 @@ constexpr double kLeastBand = 0.1, kMostBand = 0.25, kNoBand = 1e-9;
 // Parts below this share of a piece's area stay with the other side of a cut.
 constexpr double kCrumb = 0.01;
 
-struct Extent1 {
-  double low = std::numeric_limits<double>::infinity(), high = -low;
-  void add(double v) {
-    low = std::min(low, v);
-    high = std::max(high, v);
-  }
-  double length() const { return high - low; }
-};
+using Box = Bounds<glm::dvec2>;
 
-struct Box {
-  Extent1 u, v;
-  explicit Box(std::span<const Vec2d> uvs) {
-    for (const Vec2d& p : uvs) {
-      u.add(p.x);
-      v.add(p.y);
-    }
-  }
-  const Extent1& longer() const { return u.length() >= v.length() ? u : v; }
-};
+Box box_of(std::span<const Vec2d> uvs) {
+  Box box;
+  for (const Vec2d& p : uvs) box.add(to_glm(p));
+  return box;
+}
+
+double longer_side(const Box& box) {
+  return std::max(box.size().x, box.size().y);
+}
 
 bool names_uv_twice(const std::array<std::uint32_t, 3>& c) {
   return c[0] == c[1] || c[1] == c[2] || c[2] == c[0];
@@ -69,9 +62,8 @@ class Tiler {
 
  private:
   void cut(FlatChart piece) {
-    const Box box(piece.uvs);
-    const double length = box.longer().length();
-    if (length <= limit_ && keeps_to_bound(piece)) {
+    const Box box = box_of(piece.uvs);
+    if (longer_side(box) <= limit_ && keeps_to_bound(piece)) {
       pieces_.push_back(std::move(piece));
       return;
     }
@@ -95,12 +87,13 @@ class Tiler {
     param::HalfEdges half_edges;
     half_edges.build(piece.corners, piece.uvs.size());
     LineCutter cutter(piece, half_edges, all);
-    cutter.face(box.u.length() >= box.v.length() ? 0 : std::numbers::pi / 2);
-    const Extent1& along = box.longer();
-    const double shares = std::max(2.0, std::ceil(along.length() / limit_));
-    const double share = along.length() / shares, line = along.low + share * std::ceil(shares / 2);
+    const glm::dvec2 size = box.size();
+    const int axis = size.x >= size.y ? 0 : 1;
+    cutter.face(axis == 0 ? 0 : std::numbers::pi / 2);
+    const double shares = std::max(2.0, std::ceil(size[axis] / limit_));
+    const double share = size[axis] / shares, line = box.low[axis] + share * std::ceil(shares / 2);
     const double band = std::clamp(limit_ / share - 1, kLeastBand, kMostBand) * share;
-    const double crumb = kCrumb * box.u.length() * box.v.length() / shares;
+    const double crumb = kCrumb * size.x * size.y / shares;
     LineCut cut = cutter.cut(line, band, crumb);
     // Triangles as large as the piece are divided by their centroids.
     if (cut.parts.empty()) {
@@ -301,13 +294,13 @@ class Rebuilder {
   }
 
   static void lay_along_u(FlatChart& piece, Chart& chart) {
-    const Box box(piece.uvs);
-    const bool turn = box.v.length() > box.u.length();
+    const Box box = box_of(piece.uvs);
+    const glm::dvec2 size = box.size();
+    const bool turn = size.y > size.x;
     for (Vec2d& p : piece.uvs) {
-      p = turn ? Vec2d{box.v.high - p.y, p.x - box.u.low} : Vec2d{p.x - box.u.low, p.y - box.v.low};
+      p = turn ? Vec2d{box.high.y - p.y, p.x - box.low.x} : Vec2d{p.x - box.low.x, p.y - box.low.y};
     }
-    chart.size = {std::max(box.u.length(), box.v.length()),
-                  std::min(box.u.length(), box.v.length())};
+    chart.size = {std::max(size.x, size.y), std::min(size.x, size.y)};
   }
 
   const MeshView& mesh_;
@@ -330,25 +323,30 @@ std::size_t end_of_batch(const std::vector<Chart>& charts, std::size_t first) {
   return end;
 }
 
+Status check(const MeshView& mesh, const TileLimits& limits, const ChartSet& charts) {
+  const std::vector<Chart>& old = charts.charts;
+  if (limits.sides.size() != old.size())
+    return {ErrorCode::bad_input,
+            fmt::format("tiles: {} limits for {} charts", limits.sides.size(), old.size())};
+  for (std::size_t c = 0; c < old.size(); ++c) {
+    if (!(limits.sides[c] > 0) && old[c].size.x > 0)
+      return {ErrorCode::bad_input,
+              fmt::format("tiles: the limit of chart {} is {} (above 0)", c, limits.sides[c])};
+  }
+  if (charts.triangle_uv.size() != mesh.indices.size())
+    return {ErrorCode::bad_input, "tiles: the charts are not those of the mesh"};
+  if (!(limits.max_stretch > 1))
+    return {ErrorCode::bad_option,
+            fmt::format("tiles: max_stretch is {} (above 1)", limits.max_stretch)};
+  return {};
+}
+
 }  // namespace
 
 Result<std::size_t> cut_to_limits(const MeshView& mesh, const TileLimits& limits, ChartSet& charts,
                                   const Context& context) {
+  if (Status s = check(mesh, limits, charts); !s.ok()) return s;
   const std::vector<Chart>& old = charts.charts;
-  if (limits.sides.size() != old.size())
-    return Status(ErrorCode::bad_input,
-                  fmt::format("tiles: {} limits for {} charts", limits.sides.size(), old.size()));
-  for (std::size_t c = 0; c < old.size(); ++c) {
-    if (!(limits.sides[c] > 0) && old[c].size.x > 0)
-      return Status(
-          ErrorCode::bad_input,
-          fmt::format("tiles: the limit of chart {} is {} (above 0)", c, limits.sides[c]));
-  }
-  if (charts.triangle_uv.size() != mesh.indices.size())
-    return Status(ErrorCode::bad_input, "tiles: the charts are not those of the mesh");
-  if (!(limits.max_stretch > 1))
-    return Status(ErrorCode::bad_option,
-                  fmt::format("tiles: max_stretch is {} (above 1)", limits.max_stretch));
   const auto too_long = [&](std::size_t c) { return old[c].size.x > limits.sides[c]; };
   std::size_t first = 0;
   while (first < old.size() && !too_long(first)) ++first;

@@ -8,6 +8,8 @@
 #include <cstdint>
 #include <vector>
 
+#include "libatlas/core/no_index.h"
+
 namespace atlas {
 
 // A hash of 32-bit words whose low bits depend on all words.
@@ -26,22 +28,21 @@ inline std::uint32_t word_of(float x) {
 // Open addressing. The table holds indices only; the caller keeps the elements with their keys.
 class FirstIndex {
  public:
-  static constexpr std::uint32_t kNone = 0xffffffffu;
-
   // Holds up to `most` elements. At least half of the table stays empty, so searches are short.
   explicit FirstIndex(std::size_t most = 0)
-      : table_(std::bit_ceil(std::max<std::size_t>(16, 2 * most)), kNone) {}
+      : table_(std::bit_ceil(std::max<std::size_t>(16, 2 * most)), kNoIndex) {}
 
   // How many elements the table holds at most.
   std::size_t most() const { return table_.size() / 2; }
 
   // Returns the entry of the element whose key has this hash and for whose index `same(index)` is
-  // true. If there is none, the entry is kNone, and the caller sets it to the new element's index.
+  // true. If there is none, the entry is kNoIndex, and the caller sets it to the new element's
+  // index.
   template <class Same>
   std::uint32_t& find(std::uint64_t hash, const Same& same) {
     const std::size_t mask = table_.size() - 1;
     for (std::size_t at = hash & mask;; at = (at + 1) & mask)
-      if (table_[at] == kNone || same(table_[at])) return table_[at];
+      if (table_[at] == kNoIndex || same(table_[at])) return table_[at];
   }
 
  private:

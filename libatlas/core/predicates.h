@@ -1,5 +1,5 @@
-// Exact geometric predicates (by CGAL's filtered kernel, which only the .cpp includes): the sign is
-// that of the true determinant of the given doubles, unaffected by rounding errors.
+// Internal: exact geometric predicates (by CGAL's filtered kernel, which only the .cpp includes).
+// The sign is that of the true determinant of the given doubles, unaffected by rounding errors.
 #pragma once
 
 #include <algorithm>

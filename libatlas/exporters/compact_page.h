@@ -5,12 +5,14 @@
 #include <span>
 #include <vector>
 
+#include "libatlas/core/no_index.h"
+
 namespace atlas {
 
 // Renumbers index lists by first use, one list after the other, with the memory of a single table.
 class Compactor {
  public:
-  explicit Compactor(std::size_t count) : to_(count, kUnset) {}
+  explicit Compactor(std::size_t count) : to_(count, kNoIndex) {}
 
   struct Compact {
     std::vector<std::uint32_t> used;     // old index of each new one
@@ -21,18 +23,17 @@ class Compactor {
     Compact result;
     result.indices.reserve(indices.size());
     for (const std::uint32_t i : indices) {
-      if (to_[i] == kUnset) {
+      if (to_[i] == kNoIndex) {
         to_[i] = static_cast<std::uint32_t>(result.used.size());
         result.used.push_back(i);
       }
       result.indices.push_back(to_[i]);
     }
-    for (const std::uint32_t i : result.used) to_[i] = kUnset;
+    for (const std::uint32_t i : result.used) to_[i] = kNoIndex;
     return result;
   }
 
  private:
-  static constexpr std::uint32_t kUnset = 0xffffffffu;
   std::vector<std::uint32_t> to_;
 };
 

@@ -29,7 +29,7 @@ UnifiedMesh<N> unify_vertices(std::size_t corners, const KeyOf& key_of) {
     const std::array<std::uint32_t, N> key = key_of(k);
     std::uint32_t& vertex =
         first.find(hash_words(key), [&](std::uint32_t v) { return result.vertices[v] == key; });
-    if (vertex == FirstIndex::kNone) {
+    if (vertex == kNoIndex) {
       vertex = static_cast<std::uint32_t>(result.vertices.size());
       result.vertices.push_back(key);
     }

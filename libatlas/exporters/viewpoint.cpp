@@ -6,6 +6,7 @@
 #include <numbers>
 #include <vector>
 
+#include "libatlas/core/bounds.h"
 #include "libatlas/core/glm_bridge.h"
 
 namespace atlas {
@@ -31,14 +32,8 @@ class Grid {
   Grid(std::span<const Vec3f> positions, std::span<const std::uint32_t> indices,
        const ViewpointOptions& options, const Context& context)
       : up_(options.up) {
-    low_ = glm::dvec3(INFINITY);
-    high_ = glm::dvec3(-INFINITY);
-    for (const std::uint32_t i : indices) {
-      const glm::dvec3 p = to_frame(to_dvec(positions[i]));
-      low_ = glm::min(low_, p);
-      high_ = glm::max(high_, p);
-    }
-    const glm::dvec3 size = high_ - low_;
+    for (const std::uint32_t i : indices) box_.add(to_frame(to_dvec(positions[i])));
+    const glm::dvec3 size = box_.size();
     cell_ = std::max({size.x, size.y, size.z}) / std::clamp(options.cells, 8, 512);
     if (!(cell_ > 0)) cell_ = 1;
     for (int a = 0; a < 3; ++a) n_[a] = std::max(1, int(std::ceil(size[a] / cell_)));
@@ -60,12 +55,11 @@ class Grid {
 
   int size(int axis) const { return n_[axis]; }
   double cell() const { return cell_; }
-  glm::dvec3 low() const { return low_; }
-  glm::dvec3 high() const { return high_; }
-  double level_diagonal() const { return std::hypot(high_.x - low_.x, high_.y - low_.y); }
+  const Bounds<glm::dvec3>& box() const { return box_; }
+  double level_diagonal() const { return std::hypot(box_.size().x, box_.size().y); }
   bool filled(int x, int y, int z) const { return filled_[index(x, y, z)] != 0; }
   glm::dvec3 centre(int x, int y, int z) const {
-    return low_ + (glm::dvec3(x, y, z) + 0.5) * cell_;
+    return box_.low + (glm::dvec3(x, y, z) + 0.5) * cell_;
   }
 
   enum class Hit { nothing, front, back };
@@ -80,7 +74,7 @@ class Grid {
     Ray ray;
     const double step = cell_ / 2;
     for (ray.distance = step;; ray.distance += step) {
-      const glm::dvec3 at = (from + direction * ray.distance - low_) / cell_;
+      const glm::dvec3 at = (from + direction * ray.distance - box_.low) / cell_;
       int c[3];
       for (int a = 0; a < 3; ++a) {
         if (!(at[a] >= 0 && at[a] < n_[a])) return ray;
@@ -108,7 +102,7 @@ class Grid {
         const glm::dvec3 p = a + (b - a) * (double(i) / steps) + (c - a) * (double(j) / steps);
         int k[3];
         for (int axis = 0; axis < 3; ++axis) {
-          k[axis] = std::clamp(int((p[axis] - low_[axis]) / cell_), 0, n_[axis] - 1);
+          k[axis] = std::clamp(int((p[axis] - box_.low[axis]) / cell_), 0, n_[axis] - 1);
         }
         const std::size_t at = index(k[0], k[1], k[2]);
         filled_[at] = 1;
@@ -118,7 +112,7 @@ class Grid {
   }
 
   Up up_;
-  glm::dvec3 low_, high_;
+  Bounds<glm::dvec3> box_;
   double cell_ = 1;
   std::array<int, 3> n_{};
   std::vector<glm::vec3> normals_;
@@ -248,8 +242,8 @@ Best best_of(const Grid& grid, const std::vector<Eye>& eyes, const Context& cont
 }
 
 Viewpoint from_outside(const Grid& grid) {
-  const glm::dvec3 centre = (grid.low() + grid.high()) / 2.0;
-  const double radius = std::max(glm::distance(grid.low(), grid.high()) / 2, 1e-30);
+  const glm::dvec3 centre = (grid.box().low + grid.box().high) / 2.0;
+  const double radius = std::max(glm::distance(grid.box().low, grid.box().high) / 2, 1e-30);
   const glm::dvec3 towards = glm::normalize(glm::dvec3(0.75, 0.55, 0.4));  // shows three sides
   const glm::dvec3 eye = centre + towards * (radius / std::sin(kFov / 2));
   Viewpoint view;

@@ -269,7 +269,7 @@ double ArapSolver::iterate(int steps, std::span<Vec2d> uvs) {
 Relaxer::Outcome ArapSolver::remove_flips(std::span<Vec2d> uvs) {
   wake(uvs);
   // By Euler's formula, if the mesh says which edges are on the boundary.
-  const auto borders = std::count(mesh_.opposite.begin(), mesh_.opposite.end(), HalfEdges::none);
+  const auto borders = std::count(mesh_.opposite.begin(), mesh_.opposite.end(), kNoIndex);
   const bool holed = !mesh_.opposite.empty() &&
                      2 * mesh_.positions.size() < mesh_.triangles.size() + std::size_t(borders) + 2;
   return w_.relaxer.remove_flips(w_.elements, corners(), holed, uvs);

@@ -49,7 +49,7 @@ class ArapSolver {
     double goal, bound;
     int iterations;
     bool ratio;
-    bool rough;  // ParamOptions::rough
+    bool rough;  // FlattenOptions::rough
   };
   void squeeze(const Squeeze& options, std::span<Vec2d> uvs);
 

@@ -3,10 +3,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "libatlas/core/no_index.h"
+
 namespace atlas::param {
 namespace {
 
-constexpr std::uint32_t none = 0xffffffff;
 constexpr double strong_coupling = 0.06;  // relative to the geometric mean of the two diagonals
 // The factor of couplings between groups, for groups of one row. Groups are as far apart as the
 // square root of their size, and a function that is linear there should have as much energy as in
@@ -48,16 +49,16 @@ void Coarsening<Real>::measure_diagonal(const GraphLaplacian<Real>& a,
 template <class Real>
 std::uint32_t Coarsening<Real>::aggregate(const GraphLaplacian<Real>& a) {
   const auto n = static_cast<std::uint32_t>(a.rows());
-  group_.assign(n, none);
+  group_.assign(n, kNoIndex);
   const auto strong = [&](std::uint32_t i, const auto& entry) {
     return -entry.value > strength_[i] * strength_[entry.column];
   };
   std::uint32_t count = 0;
   // First, whole neighbourhoods become groups.
   for (std::uint32_t i = 0; i < n; ++i) {
-    if (group_[i] != none) continue;
+    if (group_[i] != kNoIndex) continue;
     const auto taken = [&](const auto& entry) {
-      return group_[entry.column] != none && strong(i, entry);
+      return group_[entry.column] != kNoIndex && strong(i, entry);
     };
     const auto lower = a.lower.row(i), upper = a.upper.row(i);
     if (std::any_of(lower.begin(), lower.end(), taken)) continue;
@@ -69,19 +70,19 @@ std::uint32_t Coarsening<Real>::aggregate(const GraphLaplacian<Real>& a) {
     ++count;
   }
   // Then, each remaining row joins the neighbour that it is most strongly coupled to.
-  join_.assign(n, none);
+  join_.assign(n, kNoIndex);
   for (std::uint32_t i = 0; i < n; ++i) {
-    if (group_[i] != none) continue;
+    if (group_[i] != kNoIndex) continue;
     Real least = 0;
     a.each_of_row(i, [&](const auto& entry) {
-      if (group_[entry.column] == none || entry.value >= least) return;
+      if (group_[entry.column] == kNoIndex || entry.value >= least) return;
       least = entry.value;
       join_[i] = group_[entry.column];
     });
   }
   // Rows without such a neighbour become groups of their own.
   for (std::uint32_t i = 0; i < n; ++i) {
-    if (group_[i] == none) group_[i] = join_[i] != none ? join_[i] : count++;
+    if (group_[i] == kNoIndex) group_[i] = join_[i] != kNoIndex ? join_[i] : count++;
   }
   return count;
 }
@@ -130,7 +131,7 @@ bool Coarsening<Real>::couple_groups(const GraphLaplacian<Real>& a) {
   const std::size_t most_couplings = a.lower.entries.size();
   const std::size_t limit = most_steps * (most_couplings + a.rows());
   std::size_t steps = 0;
-  head_.assign(groups_, none);
+  head_.assign(groups_, kNoIndex);
   size_.assign(groups_, 0);
   couplings_.clear();
   for (std::uint32_t i = 0; i < a.rows(); ++i) {
@@ -150,7 +151,7 @@ bool Coarsening<Real>::couple_groups(const GraphLaplacian<Real>& a) {
 template <class Real>
 std::size_t Coarsening<Real>::couple(std::uint32_t row, std::uint32_t column, double value) {
   std::size_t steps = 1;
-  for (std::uint32_t k = head_[row]; k != none; k = couplings_[k].next, ++steps) {
+  for (std::uint32_t k = head_[row]; k != kNoIndex; k = couplings_[k].next, ++steps) {
     if (couplings_[k].column != column) continue;
     couplings_[k].value += value;
     return steps;
@@ -164,7 +165,7 @@ template <class Real>
 void Coarsening<Real>::gather(GraphLaplacian<Real>& coarse) const {
   const auto each = [&](auto&& body) {
     for (std::uint32_t row = 0; row < groups_; ++row) {
-      for (std::uint32_t k = head_[row]; k != none; k = couplings_[k].next) {
+      for (std::uint32_t k = head_[row]; k != kNoIndex; k = couplings_[k].next) {
         const std::uint32_t column = couplings_[k].column;
         const double factor = group_coupling / std::sqrt(0.5 * (size_[row] + size_[column]));
         body(row, column, static_cast<Real>(factor * couplings_[k].value));

@@ -3,13 +3,12 @@
 #include <cmath>
 #include <utility>
 
+#include "libatlas/core/no_index.h"
 #include "libatlas/param/envelope_kernels.h"
 #include "libatlas/param/linear_solver.h"
 
 namespace atlas::param {
 namespace {
-
-constexpr std::uint32_t unseen = 0xffffffff;
 
 constexpr std::size_t side = EnvelopeBlocks::side, block_size = EnvelopeBlocks::size;
 
@@ -47,7 +46,7 @@ EnvelopeSolver::Graph EnvelopeSolver::connect(const Elements& elements, std::siz
   return {graph_first_, graph_column_};
 }
 
-// Fills queue_ breadth-first from `start`, over vertices whose position_ is unseen. Returns the
+// Fills queue_ breadth-first from `start`, over vertices whose position_ is kNoIndex. Returns the
 // last one.
 std::uint32_t EnvelopeSolver::sweep(const Graph& graph, std::uint32_t start) {
   queue_.assign(1, start);
@@ -56,7 +55,7 @@ std::uint32_t EnvelopeSolver::sweep(const Graph& graph, std::uint32_t start) {
     const std::uint32_t v = queue_[i];
     for (std::uint32_t k = graph.first[v]; k < graph.first[v + 1]; ++k) {
       const std::uint32_t w = graph.column[k];
-      if (position_[w] != unseen) continue;
+      if (position_[w] != kNoIndex) continue;
       position_[w] = static_cast<std::uint32_t>(queue_.size());
       queue_.push_back(w);
     }
@@ -67,12 +66,12 @@ std::uint32_t EnvelopeSolver::sweep(const Graph& graph, std::uint32_t start) {
 void EnvelopeSolver::order(const Graph& graph) {
   const std::uint32_t n = static_cast<std::uint32_t>(graph.rows());
   order_.clear();
-  position_.assign(n, unseen);
+  position_.assign(n, kNoIndex);
   held_.assign(n, 0);
   for (std::uint32_t v = 0; v < n; ++v) {
-    if (position_[v] != unseen) continue;
+    if (position_[v] != kNoIndex) continue;
     const std::uint32_t start = sweep(graph, v);  // the farthest vertex is a good end
-    for (const std::uint32_t w : queue_) position_[w] = unseen;
+    for (const std::uint32_t w : queue_) position_[w] = kNoIndex;
     sweep(graph, start);
     // The last vertex of its piece to be eliminated: its pivot is mere rounding.
     held_[start] = 1;

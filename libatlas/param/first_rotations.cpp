@@ -77,7 +77,7 @@ void flood_rotations(ParamWorkspace::Impl& w) {
     const std::uint32_t t = w.queue[i];
     for (std::uint32_t h = 3 * t; h < 3 * t + 3; ++h) {
       const std::uint32_t g = w.half_edges.opposite(h);
-      if (g == HalfEdges::none || w.rotations[HalfEdges::triangle(g)] != glm::vec2(0)) continue;
+      if (g == kNoIndex || w.rotations[HalfEdges::triangle(g)] != glm::vec2(0)) continue;
       w.rotations[HalfEdges::triangle(g)] = carried(w, h);
       w.queue.push_back(HalfEdges::triangle(g));
     }

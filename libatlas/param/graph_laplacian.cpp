@@ -19,7 +19,7 @@ double edge_couplings(const Elements& elements, const HalfEdges& half_edges,
     const double behind = e.foot * scale, before = rest * scale;
     const double top = 0.5 * (e.altitude - e.foot * rest / e.altitude) / e.length;
     largest = std::max({largest, std::abs(behind), std::abs(before), std::abs(top)});
-    const std::uint32_t right = HalfEdges::next(base), left = HalfEdges::next(right);
+    const std::uint32_t right = next_half_edge(base), left = next_half_edge(right);
     out[base] = static_cast<Real>(-e.weight * top);
     out[right] = static_cast<Real>(-e.weight * behind);
     out[left] = static_cast<Real>(-e.weight * before);
@@ -38,7 +38,7 @@ void build_graph(std::span<const Real> couplings, const HalfEdges& half_edges, s
         const std::uint32_t h = 3 * t + c, o = half_edges.opposite(h);
         if (o < h) continue;  // `none` is the largest
         body(corners[c], corners[c == 2 ? 0 : c + 1],
-             o == HalfEdges::none ? couplings[h] : couplings[h] + couplings[o]);
+             o == kNoIndex ? couplings[h] : couplings[h] + couplings[o]);
       }
     }
   };

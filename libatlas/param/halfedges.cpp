@@ -20,11 +20,11 @@ void HalfEdges::build(std::span<const std::array<std::uint32_t, 3>> triangles,
   // Lists the outgoing half-edges of each vertex. Filling moves first_[v] to the end of v's range.
   out_.resize(count);
   for (std::uint32_t h = 0; h < count; ++h) out_[first_[from(h)]++] = h;
-  found_.assign(count, none);
+  found_.assign(count, kNoIndex);
   for (std::uint32_t h = 0; h < count; ++h) {
-    if (found_[h] != none) continue;
+    if (found_[h] != kNoIndex) continue;
     const std::uint32_t g = find_opposite(h);
-    if (g == none) continue;
+    if (g == kNoIndex) continue;
     found_[h] = g;
     found_[g] = h;
   }
@@ -41,10 +41,10 @@ std::uint32_t HalfEdges::find_opposite(std::uint32_t h) const {
   };
   const bool at_start = outgoing(a).size() < outgoing(b).size();
   for (const std::uint32_t o : outgoing(at_start ? a : b)) {
-    const std::uint32_t g = at_start ? next(next(o)) : o;
-    if (found_[g] == none && from(g) == b && to(g) == a && g != h) return g;
+    const std::uint32_t g = at_start ? next_half_edge(next_half_edge(o)) : o;
+    if (found_[g] == kNoIndex && from(g) == b && to(g) == a && g != h) return g;
   }
-  return none;
+  return kNoIndex;
 }
 
 void HalfEdges::border(Border& out) const {
@@ -52,7 +52,7 @@ void HalfEdges::border(Border& out) const {
   out.loop_start.assign(1, 0);
   std::vector<bool> seen(opposite_.size(), false);
   for (std::uint32_t h = 0; h < opposite_.size(); ++h) {
-    if (opposite_[h] != none || seen[h]) continue;
+    if (opposite_[h] != kNoIndex || seen[h]) continue;
     for (std::uint32_t g = h; !seen[g]; g = next_border(g)) {
       seen[g] = true;
       out.half_edges.push_back(g);
@@ -67,8 +67,7 @@ std::vector<std::array<std::uint32_t, 2>> border_edges(
   half_edges.build(triangles, vertices);
   std::vector<std::array<std::uint32_t, 2>> edges;
   for (std::uint32_t h = 0; h < 3 * triangles.size(); ++h)
-    if (half_edges.opposite(h) == HalfEdges::none)
-      edges.push_back({half_edges.from(h), half_edges.to(h)});
+    if (half_edges.opposite(h) == kNoIndex) edges.push_back({half_edges.from(h), half_edges.to(h)});
   return edges;
 }
 

@@ -6,31 +6,30 @@
 #include <span>
 #include <vector>
 
+#include "libatlas/core/half_edge.h"
 #include "libatlas/param/local_mesh.h"
 
 namespace atlas::param {
 
-// The half-edge 3 t + k runs from corner k of triangle t to corner k + 1.
+// The half-edges of a triangle set, numbered as in core/half_edge.h.
 class HalfEdges {
  public:
-  static constexpr std::uint32_t none = 0xffffffff;
-
   // Takes the mesh's opposites, or finds them in O(n), even with vertices of high valence. Where
   // more than two triangles share an edge, pairs are made in order of id.
   void build(const LocalMesh& mesh);
   void build(std::span<const std::array<std::uint32_t, 3>> triangles, std::size_t vertices);
 
+  // kNoIndex on the boundary.
   std::uint32_t opposite(std::uint32_t h) const { return opposite_[h]; }
-  static std::uint32_t next(std::uint32_t h) { return h % 3 == 2 ? h - 2 : h + 1; }
   static std::uint32_t triangle(std::uint32_t h) { return h / 3; }
   std::uint32_t from(std::uint32_t h) const { return triangles_[h / 3][h % 3]; }
-  std::uint32_t to(std::uint32_t h) const { return from(next(h)); }
+  std::uint32_t to(std::uint32_t h) const { return from(next_half_edge(h)); }
   const std::array<std::uint32_t, 3>& corners(std::uint32_t t) const { return triangles_[t]; }
 
   // Returns the boundary half-edge that follows h along its loop.
   std::uint32_t next_border(std::uint32_t h) const {
-    h = next(h);
-    while (opposite_[h] != none) h = next(opposite_[h]);
+    h = next_half_edge(h);
+    while (opposite_[h] != kNoIndex) h = next_half_edge(opposite_[h]);
     return h;
   }
 

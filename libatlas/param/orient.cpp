@@ -6,6 +6,7 @@
 #include <numbers>
 #include <vector>
 
+#include "libatlas/core/bounds.h"
 #include "libatlas/core/degrees.h"
 #include "libatlas/core/predicates.h"
 #include "libatlas/param/rest_shape.h"
@@ -71,22 +72,16 @@ std::vector<Vec2d> outline(std::span<const Vec2d> uvs,
   return points;
 }
 
-struct Box {
-  glm::dvec2 low, high;
-  double width() const { return high.x - low.x; }
-  double height() const { return high.y - low.y; }
-  double area() const { return width() * height(); }
-};
+using Box = Bounds<glm::dvec2>;
+
+double area_of(const Box& box) {
+  return box.size().x * box.size().y;
+}
 
 // Returns the box of the points in the frame whose first axis is the unit vector d.
 Box box_along(std::span<const Vec2d> points, glm::dvec2 d) {
-  constexpr double inf = std::numeric_limits<double>::infinity();
-  Box box{{inf, inf}, {-inf, -inf}};
-  for (const Vec2d p : points) {
-    const glm::dvec2 q(d.x * p.x + d.y * p.y, d.x * p.y - d.y * p.x);
-    box.low = glm::min(box.low, q);
-    box.high = glm::max(box.high, q);
-  }
+  Box box;
+  for (const Vec2d p : points) box.add({d.x * p.x + d.y * p.y, d.x * p.y - d.y * p.x});
   return box;
 }
 
@@ -191,12 +186,12 @@ Orientation orient_for_packing(std::span<Vec2d> uvs,
   glm::dvec2 straight;
   if (straight_direction(border_directions(uvs, border_edges), &straight)) {
     const Box other = box_along(hull, straight);
-    if (other.area() <= box.area() * (1 + straight_slack)) {
+    if (area_of(other) <= area_of(box) * (1 + straight_slack)) {
       d = straight;
       box = other;
     }
   }
-  if (box.height() > box.width()) {
+  if (box.size().y > box.size().x) {
     d = {-d.y, d.x};
     box = box_along(hull, d);
   }
@@ -207,7 +202,7 @@ Orientation orient_for_packing(std::span<Vec2d> uvs,
   }
   out.cosine = d.x;
   out.sine = -d.y;
-  out.size = {box.width(), box.height()};
+  out.size = from_glm(box.size());
   return out;
 }
 

@@ -1,4 +1,4 @@
-// Turns a chart for the packer.
+// Internal: turns a chart for the packer.
 #pragma once
 
 #include <array>

@@ -3,7 +3,6 @@
 #pragma once
 
 #include <cstdint>
-#include <span>
 #include <vector>
 
 #include "libatlas/core/vec.h"
@@ -22,39 +21,14 @@ enum class ParamMethod {
 
 struct ParamOptions {
   double max_stretch = 1.25;  // bound on Distortion::stretch_999 and stretch_l2; > 1
-  // The projection is used if its own stretch_999 and stretch_l2 are at most this; <= max_stretch.
-  // 0: max_stretch.
-  double max_planar_stretch = 0;
   ParamMethod method = ParamMethod::automatic;
   Vec3d axis = {};              // of the projection; (0, 0, 0): the mean normal
   IsometricStart start = {};    // what the isometric solver starts from
   int iterations = 3;           // local/global steps before the bound is checked
-  int squeeze_iterations = 12;  // most reweighted steps, if the aim is missed
-  // The aim of squeezing, <= max_stretch; 0: max_stretch. Not reached if that costs much L2
-  // stretch.
-  double aimed_stretch = 0;
+  int squeeze_iterations = 12;  // most reweighted steps, if the bound is missed
   // The scale at which squeezing measures. false: the area-preserving one, as for the bound. true:
   // the one that suits best, so that the ratio of the largest to the smallest singular value falls.
   bool squeeze_ratio = false;
-  // Being within max_stretch is enough, and only the small places beyond it are relaxed. The whole
-  // is squeezed only if there are many of them. For rough surfaces.
-  bool local = false;
-  // No face is flat: when the whole is squeezed, each triangle may give way as far as it helps.
-  bool rough = false;
-  // Borders that can be moved apart only beyond max_stretch are left crossing within it, for
-  // callers that can remove triangles there.
-  bool leave_crossings = false;
-  // Begins with start.uvs, of which nearly all triangles must be positive, and solves nothing:
-  // flipped triangles are relaxed where they are. Beyond the bound the whole is squeezed, or, if
-  // `local`, only the places beyond it are relaxed. For a flattening that failed, after a cut, or
-  // for a chart that grew.
-  bool resume = false;
-  // Three per triangle, or empty: uvs of parts of the mesh that are flat already and placed side by
-  // side. They replace `start`. Their stretch is kept as far as they fit each other.
-  std::span<const Vec2d> joined = {};
-  // One of these parts is small: places beyond the bound are relaxed around it, and nothing is
-  // solved.
-  bool patch = false;
   // Triangles keep at least this altitude (uv units) where possible, so that they stay positive
   // when the result is rounded for output.
   double min_altitude = 0;

@@ -1,5 +1,5 @@
-// Orthogonal projection: the cheapest flattening, with a bound on the stretch that is known
-// beforehand.
+// Internal: orthogonal projection, the cheapest flattening, with a bound on the stretch that is
+// known beforehand.
 #pragma once
 
 #include <span>

@@ -23,8 +23,8 @@ double meeting_place(glm::dvec2 a, glm::dvec2 b, glm::dvec2 c, glm::dvec2 d) {
 void Separator::map_border(const LocalMesh& mesh) {
   half_edges_.build(mesh);
   half_edges_.border(border_);
-  next_.assign(mesh.positions.size(), HalfEdges::none);
-  previous_.assign(mesh.positions.size(), HalfEdges::none);
+  next_.assign(mesh.positions.size(), kNoIndex);
+  previous_.assign(mesh.positions.size(), kNoIndex);
   role_.assign(3 * mesh.triangles.size(), free_edge);
   for (const std::uint32_t h : border_.half_edges) {
     next_[half_edges_.from(h)] = h;

@@ -1,8 +1,8 @@
 #include "libatlas/param/stiffness.h"
 
 #include <algorithm>
-#include <limits>
 
+#include "libatlas/core/no_index.h"
 #include "libatlas/core/wide_vectors.h"
 
 namespace atlas::param {
@@ -102,7 +102,6 @@ namespace {
 template <class Each>
 void fill_stiffness(const Each& each, std::size_t count, const CornerLists& corners,
                     SymmetricMatrix& out) {
-  constexpr std::uint32_t unseen = std::numeric_limits<std::uint32_t>::max();
   const std::size_t n = corners.first.size() - 1;
   out.diagonal.resize(n);
   out.first.resize(n + 1);
@@ -116,7 +115,7 @@ void fill_stiffness(const Each& each, std::size_t count, const CornerLists& corn
   out.value.clear();
   reserve(2 * (n + count));
   std::vector<std::uint32_t>& place = out.scratch;  // of a column within the current row
-  place.assign(n, unseen);
+  place.assign(n, kNoIndex);
   std::uint32_t end = 0;
   for (std::uint32_t row = 0; row < n; ++row) {
     const std::uint32_t begin = end;
@@ -133,7 +132,7 @@ void fill_stiffness(const Each& each, std::size_t count, const CornerLists& corn
         const std::uint32_t column = e.v[other];
         std::uint32_t& at = place[column];
         const double v = s.across[3 - k - other];
-        if (at == unseen || at < begin) {
+        if (at == kNoIndex || at < begin) {
           at = end++;
           out.column[at] = column;
           out.value[at] = v;

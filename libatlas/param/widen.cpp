@@ -163,7 +163,7 @@ class Widener {
 
 }  // namespace
 
-Widened measure_gaps(const LocalMesh& mesh, double clearance, std::span<const Vec2d> uvs) {
+Widened measure_mesh_gaps(const LocalMesh& mesh, double clearance, std::span<const Vec2d> uvs) {
   param::HalfEdges half_edges;
   param::HalfEdges::Border border;
   half_edges.build(mesh);
@@ -175,7 +175,7 @@ Widened measure_gaps(const LocalMesh& mesh, double clearance, std::span<const Ve
   return result;
 }
 
-Widened widen_gaps(const LocalMesh& mesh, const WidenOptions& options, std::span<Vec2d> uvs) {
+Widened widen_mesh_gaps(const LocalMesh& mesh, const WidenOptions& options, std::span<Vec2d> uvs) {
   return Widener(mesh, options, uvs).run();
 }
 

@@ -26,13 +26,13 @@ struct Widened {
 };
 
 // Measures the border without changing anything.
-Widened measure_gaps(const LocalMesh& mesh, double clearance, std::span<const Vec2d> uvs);
+Widened measure_mesh_gaps(const LocalMesh& mesh, double clearance, std::span<const Vec2d> uvs);
 
 // Moves border vertices that are closer than the clearance to a part that is far away on the
 // surface (NearParts) back by half of what is missing. The triangles around them follow without
 // flipping, round by round. The best round is kept if its map is injective and within the bound;
 // otherwise uvs remain as they are, as they do where nothing is close. The given map must be
 // injective. Deterministic.
-Widened widen_gaps(const LocalMesh& mesh, const WidenOptions& options, std::span<Vec2d> uvs);
+Widened widen_mesh_gaps(const LocalMesh& mesh, const WidenOptions& options, std::span<Vec2d> uvs);
 
 }  // namespace atlas

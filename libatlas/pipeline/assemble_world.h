@@ -8,34 +8,13 @@
 #include <vector>
 
 #include "libatlas/bake/placement.h"
+#include "libatlas/charts/charted_mesh.h"
 #include "libatlas/charts/charts.h"
 #include "libatlas/exporters/world.h"
 #include "libatlas/pack/pack.h"
 #include "libatlas/scene/scene.h"
 
 namespace atlas {
-
-// The triangles to write: those of the scene or of the simplified mesh. The data that the spans
-// point at must outlive this struct.
-struct WorldMesh {
-  std::span<const std::uint32_t> indices;         // three per triangle, into Scene::positions
-  std::span<const std::uint32_t> uv_indices;      // three per triangle, into ChartSet::uvs
-  std::span<const std::uint32_t> triangle_chart;  // one per triangle
-  std::vector<bool> one_sided = {};               // one per triangle, or empty: Page::one_sided
-};
-
-// The scene's own triangles with the orientation that they have in the charts: the triangles in
-// ChartSet::flipped_triangles are reversed. `indices` (Scene::indices) and `charts` must outlive
-// this object.
-class ChartedMesh {
- public:
-  ChartedMesh(std::span<const std::uint32_t> indices, const ChartSet& charts);
-  WorldMesh view() const { return mesh_; }
-
- private:
-  std::vector<std::uint32_t> indices_, uv_indices_;  // empty if no triangle is reversed
-  WorldMesh mesh_;
-};
 
 // Together these say where a chart's uv lies on its page. Every placement names a chart of the set
 // and one of the pages.

@@ -4,13 +4,13 @@
 #include <cmath>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
-#include <limits>
 #include <numeric>
 #include <optional>
 #include <tuple>
 #include <utility>
 
 #include "libatlas/charts/chart_triangles.h"
+#include "libatlas/core/bounds.h"
 #include "libatlas/core/glm_bridge.h"
 #include "libatlas/core/parallel.h"
 #include "libatlas/pack/chart_outline.h"
@@ -28,15 +28,7 @@ constexpr std::size_t kPlaces = 256, kDrawings = 16;
 // them at most a quarter of a texel further.
 constexpr double kReach = 1;
 
-struct Box {
-  glm::dvec2 low{std::numeric_limits<double>::infinity()};
-  glm::dvec2 high{-std::numeric_limits<double>::infinity()};
-
-  void add(glm::dvec2 p) {
-    low = glm::min(low, p);
-    high = glm::max(high, p);
-  }
-};
+using Box = Bounds<glm::dvec2>;
 
 // Sorts the boxes of charts by the squares of their pages that they reach into.
 class BoxBuckets {

@@ -16,7 +16,6 @@
 #include "libatlas/pipeline/bake_pages.h"
 #include "libatlas/pipeline/fill_pages.h"
 #include "libatlas/pipeline/layout_options.h"
-#include "libatlas/pipeline/light_seams.h"
 #include "libatlas/pipeline/longest_sides.h"
 #include "libatlas/pipeline/page_layout.h"
 #include "libatlas/pipeline/part_gaps.h"
@@ -26,6 +25,7 @@
 #include "libatlas/scene/uv_page.h"
 #include "libatlas/simplify/simplify.h"
 #include "libatlas/texture/chart_textures.h"
+#include "libatlas/texture/light_seams.h"
 
 namespace atlas {
 namespace {

@@ -1,6 +1,7 @@
 #include "libatlas/pipeline/part_gaps.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <utility>
 #include <vector>
@@ -29,6 +30,13 @@ std::vector<double> clearances(std::span<const ChartPlacement> placements) {
   return clearance;
 }
 
+// The charts of a stage are those of its mesh, so nothing but cancelling can fail here. The stage
+// notices that by itself.
+GapReport report_of(const Result<GapReport>& report) {
+  assert(report.ok() || report.status().code() == ErrorCode::cancelled);
+  return report.ok() ? *report : GapReport{};
+}
+
 // Does fill_pages_apart(), except that progress may end before 1.
 Result<PagesOfParts> filled_apart(const PlainUvs& uvs, const LayoutOptions& options,
                                   ChartSet& charts, const Context& context) {
@@ -47,14 +55,15 @@ Result<PagesOfParts> filled_apart(const PlainUvs& uvs, const LayoutOptions& opti
   ChartSet wider = charts;
   std::vector<double> clearance = clearances(pages.layout.placements);
   for (double& c : clearance) c *= kSmaller;
-  const std::size_t opened = widen_gaps(uvs.mesh, {clearance, max_stretch}, wider, context).charts;
-  if (opened == 0) return pages;
+  const Result<GapReport> opened = widen_gaps(uvs.mesh, {clearance, max_stretch}, wider, context);
+  if (!opened.ok()) return opened.status();
+  if (opened->charts == 0) return pages;
   layout = fill_pages(uvs, options, wider, part_of_stage(context, "packing", 0.5, 1));
   if (context.cancelled()) return Status::cancelled();
   if (!layout.ok()) return pages;
   const GapReport left = left_part_gaps(uvs.mesh, wider, layout->placements, context);
   if (!(left.near_after < pages.left.near_after)) return pages;
-  pages.opened = std::max(pages.opened, opened);
+  pages.opened = std::max(pages.opened, opened->charts);
   pages.layout = std::move(*layout);
   pages.left = left;
   charts = std::move(wider);
@@ -72,7 +81,7 @@ GapReport open_part_gaps(const PagesOfCharts& pages, std::span<const Vec2d> dens
   const double scale = wanted > left ? std::sqrt(left / wanted) : 1;
   std::vector<double> clearance;
   for (const Vec2d d : densities) clearance.push_back(clearance_at(d) / scale);
-  return widen_gaps(pages.mesh, {clearance, pages.max_stretch}, charts, context);
+  return report_of(widen_gaps(pages.mesh, {clearance, pages.max_stretch}, charts, context));
 }
 
 GapReport open_part_gaps(const PagesOfCharts& pages, std::span<ChartTexture> textures,
@@ -93,7 +102,7 @@ GapReport open_part_gaps(const PagesOfCharts& pages, std::span<ChartTexture> tex
 
 GapReport left_part_gaps(const MeshView& mesh, const ChartSet& charts,
                          std::span<const ChartPlacement> placements, const Context& context) {
-  GapReport left = measure_gaps(mesh, clearances(placements), charts, context);
+  GapReport left = report_of(measure_gaps(mesh, clearances(placements), charts, context));
   for (double* length : {&left.border, &left.near_before, &left.near_after})
     *length *= kTexelsApart;
   return left;

@@ -13,6 +13,8 @@
 
 namespace atlas {
 
+// The charts below are those of the mesh beside them. A report is empty once cancelled.
+
 // Bilinear look-ups at two places read common texels if both coordinates differ by less than two
 // texels. Parts may lie in any direction from each other, so they are kept apart by this many
 // texels.

@@ -10,6 +10,7 @@
 #include <unordered_map>
 #include <utility>
 
+#include "libatlas/core/no_index.h"
 #include "libatlas/pipeline/assemble_world.h"
 #include "libatlas/pipeline/draw_once.h"
 #include "libatlas/pipeline/fill_pages.h"
@@ -96,18 +97,17 @@ Result<PagesOfParts> lay_out(const MeshView& mesh, const UnwrapOptions& options,
 // lie at its place, and thousands if it is the hub of a fan in a triangle soup.
 void join_corners(std::span<const std::uint32_t> indices, std::span<const Vec2f> uvs,
                   UnwrappedMesh& mesh) {
-  constexpr std::uint32_t kNone = 0xffffffffu;
-  std::vector<std::uint32_t> first(uvs.size(), kNone);
+  std::vector<std::uint32_t> first(uvs.size(), kNoIndex);
   std::unordered_map<std::uint64_t, std::uint32_t> others;  // by uv and input vertex
   mesh.indices.resize(indices.size());
   for (std::size_t i = 0; i < indices.size(); ++i) {
     const std::uint32_t uv = mesh.charts.triangle_uv[i],
                         added = std::uint32_t(mesh.vertices.size());
     std::uint32_t& v =
-        first[uv] == kNone || mesh.vertices[first[uv]] == indices[i]
+        first[uv] == kNoIndex || mesh.vertices[first[uv]] == indices[i]
             ? first[uv]
-            : others.try_emplace(std::uint64_t{uv} << 32 | indices[i], kNone).first->second;
-    if (v == kNone) {
+            : others.try_emplace(std::uint64_t{uv} << 32 | indices[i], kNoIndex).first->second;
+    if (v == kNoIndex) {
       v = added;
       mesh.vertices.push_back(indices[i]);
       mesh.uvs.push_back(uvs[uv]);

@@ -13,7 +13,7 @@
 #include "libatlas/pipeline/assemble_world.h"
 #include "libatlas/pipeline/draw_once.h"
 #include "libatlas/pipeline/export_world.h"
-#include "libatlas/pipeline/one_sided.h"
+#include "libatlas/sheets/one_sided.h"
 
 namespace atlas {
 namespace {

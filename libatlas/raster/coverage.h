@@ -1,5 +1,5 @@
-// Exact area coverage: finds every texel that a triangle touches, and which part of the texel the
-// triangle covers. Header-only, so that the caller's work per texel is inlined.
+// Internal: exact area coverage. Finds every texel that a triangle touches, and which part of the
+// texel the triangle covers. Header-only, so that the caller's work per texel is inlined.
 #pragma once
 
 #include <algorithm>

@@ -1,7 +1,7 @@
-// Sample points on a triangle, in a number that suits the texels it covers. Large triangles are
-// sampled by shifted grids. Small and thin triangles are sampled by quadrature points, because they
-// could lie between the grid points and be missed. Header-only, so that the caller's work per
-// sample is inlined.
+// Internal: sample points on a triangle, in a number that suits the texels it covers. Large
+// triangles are sampled by shifted grids. Small and thin triangles are sampled by quadrature
+// points, because they could lie between the grid points and be missed. Header-only, so that the
+// caller's work per sample is inlined.
 #pragma once
 
 #include <algorithm>

@@ -1,5 +1,5 @@
-// Finds the texels whose sample points lie in a triangle, exactly, by the fill rule of graphics
-// hardware. Header-only, so that the caller's work per span is inlined.
+// Internal: finds the texels whose sample points lie in a triangle, exactly, by the fill rule of
+// graphics hardware. Header-only, so that the caller's work per span is inlined.
 #pragma once
 
 #include <algorithm>

@@ -4,8 +4,9 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
-#include <limits>
 
+#include "libatlas/core/bounds.h"
+#include "libatlas/core/glm_bridge.h"
 #include "libatlas/scene/file_bytes.h"
 #include "libatlas/scene/formats.h"
 #include "libatlas/scene/text_scanner.h"
@@ -67,22 +68,14 @@ Result<std::vector<Vec3f>> read_values(const fs::path& path, const Context& cont
   return std::move(other.illumination);
 }
 
-struct Box {
-  Vec3d low{kFar, kFar, kFar}, high{-kFar, -kFar, -kFar};
+Bounds<glm::dvec3> box_of(const std::vector<Vec3d>& points) {
+  Bounds<glm::dvec3> box;
+  for (const Vec3d& p : points)
+    if (usable_position(p)) box.add(to_glm(p));
+  return box;
+}
 
-  explicit Box(const std::vector<Vec3d>& points) {
-    for (const Vec3d& p : points) {
-      if (!usable_position(p)) continue;
-      low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
-      high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
-    }
-  }
-
- private:
-  static constexpr double kFar = std::numeric_limits<double>::max();
-};
-
-double distance(const Vec3d& a, const Vec3d& b) {
+double distance(const glm::dvec3& a, const glm::dvec3& b) {
   return std::hypot(a.x - b.x, a.y - b.y, a.z - b.z);
 }
 
@@ -92,13 +85,13 @@ double distance(const Vec3d& a, const Vec3d& b) {
 void check_order(const SceneBuilder& other, SceneBuilder& builder) {
   constexpr double kSameBox = 1e-3, kSamePlace = 1e-2;  // relative to the diagonal
   if (other.positions.size() != builder.positions.size()) return;
-  const Box own(builder.positions), theirs(other.positions);
+  const auto own = box_of(builder.positions), theirs = box_of(other.positions);
   const double diagonal = distance(own.low, own.high);
   if (!(distance(own.low, theirs.low) <= kSameBox * diagonal &&
         distance(own.high, theirs.high) <= kSameBox * diagonal))
     return;
   for (std::size_t i = 0; i < builder.positions.size(); ++i)
-    if (distance(builder.positions[i], other.positions[i]) > kSamePlace * diagonal)
+    if (distance(to_glm(builder.positions[i]), to_glm(other.positions[i])) > kSamePlace * diagonal)
       builder.defects.add(DefectKind::illumination_elsewhere,
                           [&] { return fmt::format("{}: vertex {}", other.file, i + 1); });
 }

@@ -8,6 +8,7 @@
 
 #include "libatlas/core/counting_sort.h"
 #include "libatlas/core/glm_bridge.h"
+#include "libatlas/core/no_index.h"
 #include "libatlas/core/predicates.h"
 
 namespace atlas {
@@ -147,12 +148,12 @@ class EarClipper {
     std::uint32_t start = 1;  // continuing after the last ear avoids long slivers at one corner
     while (size_ > 3) {
       std::uint32_t ear = find_ear(start);
-      if (ear == kNone && clipped_ && again_ > 0) {
+      if (ear == kNoIndex && clipped_ && again_ > 0) {
         --again_;
         look_over();
         ear = find_ear(start);
       }
-      start = clip(ear == kNone ? start : ear);
+      start = clip(ear == kNoIndex ? start : ear);
       if (2 * size_ < indexed_) index();
     }
     const std::uint32_t first =
@@ -161,9 +162,7 @@ class EarClipper {
   }
 
  private:
-  static constexpr std::uint32_t kNone = 0xffffffffu;
-
-  // Returns the first ear around the ring from `start` on, or kNone.
+  // Returns the first ear around the ring from `start` on, or kNoIndex.
   std::uint32_t find_ear(std::uint32_t start) {
     for (const auto& [from, to] : {std::pair(start, std::uint32_t(points_.size())), {0u, start}}) {
       for (std::uint32_t i = next_candidate(from, to); i < to; i = next_candidate(i, to)) {
@@ -171,7 +170,7 @@ class EarClipper {
         if (is_ear(i)) return i;
       }
     }
-    return kNone;
+    return kNoIndex;
   }
 
   std::uint32_t next_candidate(std::uint32_t from, std::uint32_t to) const {

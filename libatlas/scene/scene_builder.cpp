@@ -6,7 +6,9 @@
 #include <limits>
 #include <unordered_map>
 
+#include "libatlas/core/bounds.h"
 #include "libatlas/core/drop_rounding.h"
+#include "libatlas/core/glm_bridge.h"
 #include "libatlas/core/is_finite.h"
 #include "libatlas/image/file_kind.h"
 #include "libatlas/image/image_io.h"
@@ -23,21 +25,11 @@ namespace {
 constexpr double kFarDiagonals = 1;
 constexpr double kOriginStep = 0.25;  // relative to the power of two above the diagonal
 
-struct Box {
-  double low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY};
-
-  void add(const Vec3d& p) {
-    const double c[3] = {p.x, p.y, p.z};
-    for (int i = 0; i < 3; ++i) {
-      low[i] = std::min(low[i], c[i]);
-      high[i] = std::max(high[i], c[i]);
-    }
-  }
-};
+using Box = Bounds<glm::dvec3>;
 
 double diagonal_of(const Box& box) {
   double diagonal = 0;
-  for (int i = 0; i < 3; ++i) diagonal = std::hypot(diagonal, box.high[i] - box.low[i]);
+  for (int i = 0; i < 3; ++i) diagonal = std::hypot(diagonal, box.size()[i]);
   return diagonal;
 }
 
@@ -45,7 +37,7 @@ Vec3d choose_origin(const Box& box) {
   const double diagonal = diagonal_of(box);
   double centre[3], distance = 0;
   for (int i = 0; i < 3; ++i) {
-    centre[i] = box.low[i] + (box.high[i] - box.low[i]) / 2;
+    centre[i] = box.low[i] + box.size()[i] / 2;
     distance = std::hypot(distance, centre[i]);
   }
   if (!(diagonal > 0) || distance <= kFarDiagonals * diagonal) return {};
@@ -113,7 +105,7 @@ Status SceneBuilder::place_positions(Scene& scene) const {
   for (const std::uint32_t v : indices_) used[v] = true;
   Box box;
   for (std::size_t i = 0; i < positions.size(); ++i) {
-    if (used[i]) box.add(positions[i]);
+    if (used[i]) box.add(to_glm(positions[i]));
   }
   const double diagonal = diagonal_of(box);
   if (diagonal > 0 && diagonal < double(std::numeric_limits<float>::min())) {

@@ -41,7 +41,7 @@ class Soup {
     if (builder_.positions.size() >= first_.most()) grow();
     p = {p.x + 0.0, p.y + 0.0, p.z + 0.0};  // -0 is 0
     std::uint32_t& entry = find(p);
-    if (entry == FirstIndex::kNone) {
+    if (entry == kNoIndex) {
       entry = static_cast<std::uint32_t>(builder_.positions.size());
       builder_.positions.push_back(p);
       if (!usable_position(p) && bad_.size() < DefectReport::kMaxPlaces) bad_.push_back(place());

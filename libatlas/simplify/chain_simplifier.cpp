@@ -29,8 +29,8 @@ ChainSimplifier::ChainSimplifier(const Geometry& geometry,
       chains_(std::move(chains)),
       texels_per_unit_(texels_per_unit) {
   const std::size_t n = chains_.slot_chain.size();
-  next_.assign(n, kNone);
-  previous_.assign(n, kNone);
+  next_.assign(n, kNoIndex);
+  previous_.assign(n, kNoIndex);
   edge_slip_.assign(n, 0.0F);
   alive_.assign(n, 1);
   key_.assign(n, kIdle);
@@ -45,7 +45,7 @@ ChainSimplifier::ChainSimplifier(const Geometry& geometry,
       next_[last] = first;
     }
     for (std::uint32_t s = first; s <= last; ++s) {
-      if (previous_[s] == kNone || next_[s] == kNone) continue;
+      if (previous_[s] == kNoIndex || next_[s] == kNoIndex) continue;
       for (std::uint32_t k = 0; k < chain.side_count; ++k) {
         homes_.push_back(
             {chains_.side_chart[chain.first_side + k], chains_.vertex(chain, s, k), s});
@@ -81,7 +81,7 @@ void ChainSimplifier::wake(std::uint32_t chart, const std::vector<std::uint32_t>
 double ChainSimplifier::worst_slip() const {
   double worst = 0;
   for (std::size_t s = 0; s < alive_.size(); ++s) {
-    if (alive_[s] && next_[s] != kNone) worst = std::max<double>(worst, edge_slip_[s]);
+    if (alive_[s] && next_[s] != kNoIndex) worst = std::max<double>(worst, edge_slip_[s]);
   }
   return worst;
 }
@@ -137,7 +137,8 @@ double ChainSimplifier::measure(const BorderChain& chain, std::uint32_t from,
 
 bool ChainSimplifier::may_go(const BorderChain& chain, std::uint32_t slot) const {
   const std::uint32_t a = previous_[slot], b = next_[slot];
-  if (a == kNone || b == kNone || a == b || next_[b] == a) return false;  // keeps three vertices
+  if (a == kNoIndex || b == kNoIndex || a == b || next_[b] == a)
+    return false;  // keeps three vertices
   return !(geometry_.position(uv_of(chain, a, 0)) == geometry_.position(uv_of(chain, b, 0)));
 }
 

@@ -40,7 +40,7 @@ class ChainSimplifier {
     std::uint32_t chart, vertex, slot;
   };
   struct Candidate {
-    std::uint32_t target = kNone;
+    std::uint32_t target = kNoIndex;
     double cost = 0, step = 0;
     bool possible = false;
   };
@@ -64,7 +64,7 @@ class ChainSimplifier {
   BorderChains chains_;
   std::span<const double> texels_per_unit_;
   double slip_ = 0, open_slip_ = 0;
-  std::vector<std::uint32_t> next_, previous_;  // remaining neighbours along the chain, or kNone
+  std::vector<std::uint32_t> next_, previous_;  // remaining neighbours along the chain, or kNoIndex
   std::vector<float> edge_slip_;                // slip bound of the coarse edge to next_, texels
   std::vector<std::uint8_t> alive_;
   std::vector<float> key_;

@@ -39,21 +39,21 @@ ChartMesh::ChartMesh(const FineChart& fine) : impl_(std::make_unique<Impl>()) {
   const std::uint32_t halves = static_cast<std::uint32_t>(fine.corners.size());
   std::uint32_t edges = 0;
   for (std::uint32_t h = 0; h < halves; ++h)
-    edges += fine.opposite[h] == kNone || h < fine.opposite[h];
+    edges += fine.opposite[h] == kNoIndex || h < fine.opposite[h];
   mesh.resize(fine.vertex_count(), edges, fine.triangle_count());
   std::vector<Half> link(halves);
   int edge = 0;
   for (std::uint32_t h = 0; h < halves; ++h) {
     const std::uint32_t twin = fine.opposite[h];
-    if (twin != kNone && twin < h) continue;
+    if (twin != kNoIndex && twin < h) continue;
     link[h] = Half(2 * edge);
-    if (twin != kNone) link[twin] = Half(2 * edge + 1);
+    if (twin != kNoIndex) link[twin] = Half(2 * edge + 1);
     mesh.set_vertex_handle(Half(2 * edge), vertex(fine.to(h)));
     mesh.set_vertex_handle(Half(2 * edge + 1), vertex(fine.from(h)));
     ++edge;
   }
   for (std::uint32_t h = 0; h < halves; ++h) {
-    mesh.set_next_halfedge_handle(link[h], link[next_half(h)]);
+    mesh.set_next_halfedge_handle(link[h], link[next_half_edge(h)]);
     mesh.set_face_handle(link[h], face(h / 3));
     if (h % 3 == 0) mesh.set_halfedge_handle(face(h / 3), link[h]);
   }

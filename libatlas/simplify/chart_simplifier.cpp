@@ -124,7 +124,7 @@ void ChartSimplifier::apply(const Collapse& collapse) {
       wake(u, static_cast<float>(collapse.cost));
     }
   }
-  star_.vertex = kNone;
+  star_.vertex = kNoIndex;
 }
 
 void ChartSimplifier::push(std::uint32_t v, float cost) {

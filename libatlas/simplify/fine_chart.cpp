@@ -34,7 +34,7 @@ void collect_triangles(const Geometry& geometry, std::uint32_t chart,
 // Fills `opposite`. At this point `corners` holds uvs between `first_uv` and `first_uv + uv_count`.
 void glue(FineChart& fine, std::uint32_t first_uv, std::uint32_t uv_count) {
   const std::uint32_t halves = static_cast<std::uint32_t>(fine.corners.size());
-  fine.opposite.assign(halves, kNone);
+  fine.opposite.assign(halves, kNoIndex);
   const auto low = [&](std::size_t h) { return std::min(fine.from(h), fine.to(h)) - first_uv; };
   Buckets leaving = sort_into_buckets(halves, uv_count, [&](std::size_t h) { return low(h); });
   const auto high = [&](std::uint32_t h) { return std::max(fine.from(h), fine.to(h)); };
@@ -59,22 +59,22 @@ void glue(FineChart& fine, std::uint32_t first_uv, std::uint32_t uv_count) {
 // Replaces the uvs in `corners` by local vertices, one for each fan of triangles.
 void split_fans(FineChart& fine) {
   const std::uint32_t halves = static_cast<std::uint32_t>(fine.corners.size());
-  std::vector<std::uint32_t> local(halves, kNone);
+  std::vector<std::uint32_t> local(halves, kNoIndex);
   for (std::uint32_t first = 0; first < halves; ++first) {
-    if (local[first] != kNone) continue;
+    if (local[first] != kNoIndex) continue;
     const std::uint32_t vertex = fine.vertex_count();
     fine.vertex_uv.push_back(fine.corners[first]);
     std::uint32_t start = first;  // moved back to the border if there is one, else once around
-    while (fine.opposite[start] != kNone) {
-      start = next_half(fine.opposite[start]);
+    while (fine.opposite[start] != kNoIndex) {
+      start = next_half_edge(fine.opposite[start]);
       if (start == first) break;
     }
     fine.vertex_half.push_back(start);
     std::uint32_t h = start;
     do {
       local[h] = vertex;
-      h = fine.opposite[previous_half(h)];
-    } while (h != kNone && h != start);
+      h = fine.opposite[previous_half_edge(h)];
+    } while (h != kNoIndex && h != start);
   }
   fine.corners = std::move(local);
 }
@@ -140,10 +140,10 @@ std::uint64_t cut_chart(const BorderIndex& border, FineChart& fine) {
   std::uint64_t cuts = 0;
   for (std::uint32_t h = 0; any && h < fine.corners.size(); ++h) {
     const std::uint32_t twin = fine.opposite[h];
-    if (twin == kNone || twin < h) continue;
+    if (twin == kNoIndex || twin < h) continue;
     const std::uint64_t a = keys[fine.from(h)], b = keys[fine.to(h)];
     if (a == 0 || b == 0 || !border.edge(a, b)) continue;
-    fine.opposite[h] = fine.opposite[twin] = kNone;
+    fine.opposite[h] = fine.opposite[twin] = kNoIndex;
     ++cuts;
   }
   if (cuts == 0) return 0;
@@ -157,8 +157,8 @@ std::uint64_t cut_chart(const BorderIndex& border, FineChart& fine) {
 }  // namespace
 
 std::uint32_t FineChart::border_into(std::uint32_t v) const {
-  std::uint32_t h = previous_half(vertex_half[v]);
-  while (opposite[h] != kNone) h = previous_half(opposite[h]);
+  std::uint32_t h = previous_half_edge(vertex_half[v]);
+  while (opposite[h] != kNoIndex) h = previous_half_edge(opposite[h]);
   return h;
 }
 

@@ -7,19 +7,9 @@
 
 #include "libatlas/charts/charts.h"
 #include "libatlas/core/context.h"
+#include "libatlas/core/half_edge.h"
 
 namespace atlas::simplify {
-
-inline constexpr std::uint32_t kNone = 0xffffffffu;
-
-// Half-edge h = 3 t + i runs from corner i of triangle t to corner (i + 1) % 3. In uv, its triangle
-// is on its left.
-inline std::uint32_t next_half(std::uint32_t h) {
-  return h % 3 == 2 ? h - 2 : h + 1;
-}
-inline std::uint32_t previous_half(std::uint32_t h) {
-  return h % 3 == 0 ? h + 2 : h - 1;
-}
 
 // Where vertices lie. All charts share this.
 struct Geometry {
@@ -36,10 +26,10 @@ struct Geometry {
 // One chart as a manifold. Two triangles are neighbours if exactly these two share an edge between
 // the same two uvs, in opposite directions. Every other edge is a border edge. A local vertex is
 // one fan of triangles around one uv, so that each vertex has one disk or one half-disk of
-// triangles.
+// triangles. In uv, the triangle of a half-edge (core/half_edge.h) is on its left.
 struct FineChart {
-  std::vector<std::uint32_t> corners;      // 3 a triangle: local vertices
-  std::vector<std::uint32_t> opposite;     // 3 a triangle: the half-edge on the other side or kNone
+  std::vector<std::uint32_t> corners;   // 3 a triangle: local vertices
+  std::vector<std::uint32_t> opposite;  // 3 a triangle: the half-edge on the other side or kNoIndex
   std::vector<std::uint32_t> vertex_half;  // 1 a vertex: a half-edge that leaves it; for a border
                                            // vertex, the one that runs along the border
   std::vector<std::uint32_t> vertex_uv;    // 1 a vertex: into ChartSet::uvs
@@ -48,9 +38,9 @@ struct FineChart {
 
   std::uint32_t vertex_count() const { return static_cast<std::uint32_t>(vertex_uv.size()); }
   std::uint32_t triangle_count() const { return static_cast<std::uint32_t>(source.size()); }
-  bool border(std::uint32_t v) const { return opposite[vertex_half[v]] == kNone; }
+  bool border(std::uint32_t v) const { return opposite[vertex_half[v]] == kNoIndex; }
   std::uint32_t from(std::uint32_t h) const { return corners[h]; }
-  std::uint32_t to(std::uint32_t h) const { return corners[next_half(h)]; }
+  std::uint32_t to(std::uint32_t h) const { return corners[next_half_edge(h)]; }
   // The half-edge along the border that ends at the border vertex v.
   std::uint32_t border_into(std::uint32_t v) const;
 };

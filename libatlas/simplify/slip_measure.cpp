@@ -85,8 +85,8 @@ void SlipMeasure::push_fan(std::uint32_t vertex) {
   std::uint32_t h = start;
   do {
     push(h / 3);
-    h = fine_.opposite[previous_half(h)];
-  } while (h != kNone && h != start);
+    h = fine_.opposite[previous_half_edge(h)];
+  } while (h != kNoIndex && h != start);
 }
 
 bool SlipMeasure::visit(std::uint32_t triangle, const Coarse& coarse, const SlipLimits& limits,
@@ -138,7 +138,7 @@ bool SlipMeasure::visit(std::uint32_t triangle, const Coarse& coarse, const Slip
   if (found.turn > limits.turn) return false;
   for (int k = 0; k < 3; ++k) {
     const std::uint32_t other = fine_.opposite[std::size_t{3} * triangle + k];
-    if (other != kNone) push(other / 3);
+    if (other != kNoIndex) push(other / 3);
   }
   return true;
 }

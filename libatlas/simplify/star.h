@@ -11,7 +11,7 @@ namespace atlas::simplify {
 
 // The effect of merging a vertex v into its neighbour w.
 struct Estimate {
-  std::uint32_t v = kNone, w = kNone;
+  std::uint32_t v = kNoIndex, w = kNoIndex;
   double cost = 0;  // dimensionless: (slip / bound)² + (small factor x length in texels)², and more
                     // if needles arise
   double offset = 0;     // distance in space between v and the new surface at its uv, texels
@@ -22,7 +22,7 @@ struct Estimate {
 // that the vertex could be merged into, given as an index into the ring.
 struct Star {
   Ring ring;
-  std::uint32_t vertex = kNone;
+  std::uint32_t vertex = kNoIndex;
   glm::dvec2 uv;
   glm::dvec3 position;
   std::vector<glm::dvec2> uvs;        // of the neighbours

@@ -2,11 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numbers>
 #include <random>
 
+#include "libatlas/core/bounds.h"
 #include "libatlas/core/counting_sort.h"
+#include "libatlas/core/glm_bridge.h"
 #include "libatlas/core/random.h"
 
 namespace atlas {
@@ -37,24 +38,17 @@ void direction_in_cone(std::mt19937_64& random, const double axis[3], double cos
 class VoxelGrid {
  public:
   VoxelGrid(std::span<const SurfaceSample> samples, double area) {
-    double high[3];
-    for (int k = 0; k < 3; ++k) low_[k] = std::numeric_limits<double>::max(), high[k] = -low_[k];
-    for (const SurfaceSample& s : samples) {
-      const double p[3] = {s.position.x, s.position.y, s.position.z};
-      for (int k = 0; k < 3; ++k) {
-        low_[k] = std::min(low_[k], p[k]);
-        high[k] = std::max(high[k], p[k]);
-      }
-    }
+    Bounds<glm::dvec3> box;
+    for (const SurfaceSample& s : samples) box.add(to_dvec(s.position));
+    low_ = box.low;
     voxel_ = kVoxelSpacings * std::sqrt(area / static_cast<double>(samples.size()));
     const auto cells = [&] {
       double n = 1;
-      for (int k = 0; k < 3; ++k) n *= std::floor((high[k] - low_[k]) / voxel_) + 1;
+      for (int k = 0; k < 3; ++k) n *= std::floor(box.size()[k] / voxel_) + 1;
       return n;
     };
     while (cells() > kMaxVoxels) voxel_ *= 1.25;
-    for (int k = 0; k < 3; ++k)
-      size_[k] = static_cast<int>(std::floor((high[k] - low_[k]) / voxel_)) + 1;
+    for (int k = 0; k < 3; ++k) size_[k] = static_cast<int>(std::floor(box.size()[k] / voxel_)) + 1;
     sort(samples);
   }
 
@@ -100,7 +94,7 @@ class VoxelGrid {
   void sort(std::span<const SurfaceSample> samples) {
     std::vector<std::size_t> where(samples.size());
     for (std::size_t i = 0; i < samples.size(); ++i) {
-      const double p[3] = {samples[i].position.x, samples[i].position.y, samples[i].position.z};
+      const glm::dvec3 p = to_dvec(samples[i].position);
       int cell[3];
       for (int k = 0; k < 3; ++k)
         cell[k] = std::clamp(static_cast<int>((p[k] - low_[k]) / voxel_), 0, size_[k] - 1);
@@ -113,7 +107,8 @@ class VoxelGrid {
         [&](std::size_t i, std::uint32_t at) { values_[at] = samples[i].value; });
   }
 
-  double low_[3], voxel_ = 1;
+  glm::dvec3 low_{};
+  double voxel_ = 1;
   int size_[3];
   std::vector<std::uint32_t> first_;  // index of each voxel's first sample; one more at the end
   std::vector<float> values_;

@@ -9,12 +9,12 @@
 #include <limits>
 #include <utility>
 
+#include "libatlas/core/no_index.h"
 #include "libatlas/uvs/thin_uvs.h"
 
 namespace atlas {
 namespace {
 
-constexpr std::uint32_t kNone = ~0u;
 // The most uvs of one stack, and of all stacks together. 1000 uvs take a second at the most.
 constexpr std::size_t kMostMembers = 1000, kMostInAll = 20000;
 // How far a uv may go from its exact place for an energy of a half, in steps between floats. These
@@ -75,7 +75,7 @@ class StackOpener {
  private:
   struct Corner {
     glm::dvec2 at;
-    std::uint32_t place;  // among the members, or kNone
+    std::uint32_t place;  // among the members, or kNoIndex
   };
 
   std::array<Corner, 3> corners(std::uint32_t t, const Vector& x) const {
@@ -83,7 +83,7 @@ class StackOpener {
     for (std::size_t k = 0; k < 3; ++k) {
       const std::uint32_t uv = corners_[3 * std::size_t(t) + k], place = place_[uv];
       c[k] = {(exact_[uv] - origin_) / kUvStep, place};
-      if (place != kNone) c[k].at += glm::dvec2(x[2 * place], x[2 * place + 1]);
+      if (place != kNoIndex) c[k].at += glm::dvec2(x[2 * place], x[2 * place + 1]);
     }
     return c;
   }
@@ -173,11 +173,11 @@ class StackOpener {
         eigen.eigenvectors().transpose();
     for (int i = 0; i < 6; ++i) {
       const std::uint32_t row = c[std::size_t(i / 2)].place;
-      if (row == kNone) continue;
+      if (row == kNoIndex) continue;
       gradient[2 * row + std::uint32_t(i % 2)] += barrier.slope * g[i];
       for (int j = 0; j < 6; ++j) {
         const std::uint32_t column = c[std::size_t(j / 2)].place;
-        if (column == kNone) continue;
+        if (column == kNoIndex) continue;
         entries.emplace_back(int(2 * row) + i % 2, int(2 * column) + j % 2, h(i, j));
       }
     }
@@ -194,7 +194,7 @@ class StackOpener {
   std::span<const std::uint32_t> corners_;
   std::span<const glm::dvec2> exact_;
   const Stack& stack_;
-  std::vector<std::uint32_t>& place_;  // one per uv: its place among the members, or kNone
+  std::vector<std::uint32_t>& place_;  // one per uv: its place among the members, or kNoIndex
   glm::dvec2 origin_;
   std::vector<double> targets_;  // one per triangle: twice the area wanted, squared steps
 };
@@ -210,7 +210,7 @@ class StackFinder {
     Stack stack;
     const auto add = [&](std::uint32_t triangle) {
       for (const std::uint32_t uv : corners_of(triangle)) {
-        if (place[uv] != kNone) continue;
+        if (place[uv] != kNoIndex) continue;
         place[uv] = std::uint32_t(stack.members.size());
         stack.members.push_back(uv);
       }
@@ -261,7 +261,7 @@ class StackUvs {
         farthest_(farthest),
         uvs_(uvs),
         finder_(triangles),
-        place_(uvs.size(), kNone),
+        place_(uvs.size(), kNoIndex),
         in_vain_(triangles.corners.size() / 3, 0) {}
 
   void run() {
@@ -270,7 +270,7 @@ class StackUvs {
         if (moved_ >= kMostInAll) return;
         const Stack stack = finder_.find(t, rings, place_);
         open(stack);
-        for (const std::uint32_t uv : stack.members) place_[uv] = kNone;
+        for (const std::uint32_t uv : stack.members) place_[uv] = kNoIndex;
         if (rings < kMostRings) continue;
         in_vain_[t] = 1;
         for (const std::uint32_t other : stack.triangles) in_vain_[other] = 1;

@@ -7,12 +7,12 @@
 #include <numbers>
 #include <optional>
 
+#include "libatlas/core/no_index.h"
 #include "libatlas/uvs/thin_uvs.h"
 
 namespace atlas {
 namespace {
 
-constexpr std::uint32_t kNone = ~0u;
 // In steps between floats: uvs that are nearer to each other than this form one cluster. If the
 // cluster cannot be spread, the next larger distance is tried.
 constexpr std::array kNear{16.0, 64.0, 256.0};
@@ -40,7 +40,7 @@ class SpeckSpreader {
  public:
   SpeckSpreader(std::span<const std::uint32_t> corners, const Buckets& corners_at,
                 std::vector<Vec2f>& uvs)
-      : corners_(corners), corners_at_(corners_at), uvs_(uvs), place_(uvs.size(), kNone) {}
+      : corners_(corners), corners_at_(corners_at), uvs_(uvs), place_(uvs.size(), kNoIndex) {}
 
   void run() {
     // One per triangle: whether a cluster with it could not be spread.

@@ -29,7 +29,7 @@ std::vector<std::uint32_t> weld(const std::vector<Vec3f>& positions) {
     const Vec3f& p = positions[i];
     std::uint32_t& entry = first.find(hash_words<3>({word_of(p.x), word_of(p.y), word_of(p.z)}),
                                       [&](std::uint32_t k) { return positions[k] == p; });
-    if (entry == FirstIndex::kNone) entry = i;
+    if (entry == kNoIndex) entry = i;
     out[i] = entry;
   }
   return out;
@@ -183,7 +183,7 @@ class Builder {
                         two_words(n.z, 0)};
     std::uint32_t& vertex =
         first_.find(hash_words(key), [&](std::uint32_t v) { return keys_[v] == key; });
-    if (vertex != FirstIndex::kNone) return vertex;
+    if (vertex != kNoIndex) return vertex;
     vertex = std::uint32_t(keys_.size());
     keys_.push_back(key);
     view_.positions.push_back(scene_.positions[p]);

@@ -1,7 +1,11 @@
 // Narrow gaps in charts are widened: what charts guarantee still holds, and nothing else changes.
 #include <gtest/gtest.h>
 
+#include <atomic>
 #include <cmath>
+#include <limits>
+#include <span>
+#include <vector>
 
 #include "libatlas/charts/gaps.h"
 #include "tests/charts/chart_checks.h"
@@ -73,6 +77,19 @@ double uv_area(const ChartSet& set) {
   return area;
 }
 
+GapReport measured(const MeshView& mesh, std::span<const double> clearance, const ChartSet& set) {
+  const Result<GapReport> report = measure_gaps(mesh, clearance, set, {});
+  EXPECT_TRUE(report.ok()) << report.status().message();
+  return report.ok() ? *report : GapReport{};
+}
+
+GapReport widened(const MeshView& mesh, const GapLimits& limits, ChartSet& set,
+                  const Context& context = {}) {
+  const Result<GapReport> report = widen_gaps(mesh, limits, set, context);
+  EXPECT_TRUE(report.ok()) << report.status().message();
+  return report.ok() ? *report : GapReport{};
+}
+
 TEST(Gaps, ChartsKeepWhatTheyPromise) {
   std::size_t changed = 0;
   for (const Shape& shape : zoo()) {
@@ -80,8 +97,7 @@ TEST(Gaps, ChartsKeepWhatTheyPromise) {
     const ChartSet before = charts_of(mesh);
     for (const double share : {0.01, 0.09}) {
       ChartSet set = before;
-      const GapReport report =
-          widen_gaps(mesh.view(), {clearances(set, share), kMaxStretch}, set, {});
+      const GapReport report = widened(mesh.view(), {clearances(set, share), kMaxStretch}, set);
       changed += report.charts;
       EXPECT_LE(report.near_after, report.near_before) << shape.name;
       const ChartFindings found = check_charts(mesh.view(), set);
@@ -103,12 +119,12 @@ TEST(Gaps, EndsOfAStairPart) {
   ChartSet set = flat_stairs(mesh);
   ASSERT_EQ(set.charts.size(), 1u);
   const std::vector<double> clearance = clearances(set, 0.05);
-  const GapReport before = measure_gaps(mesh.view(), clearance, set, {});
+  const GapReport before = measured(mesh.view(), clearance, set);
   ASSERT_GT(before.near_before, 1);
-  const GapReport report = widen_gaps(mesh.view(), {clearance, kMaxStretch}, set, {});
+  const GapReport report = widened(mesh.view(), {clearance, kMaxStretch}, set);
   EXPECT_EQ(report.charts, 1u);
   EXPECT_DOUBLE_EQ(report.near_before, before.near_before);
-  const GapReport after = measure_gaps(mesh.view(), clearance, set, {});
+  const GapReport after = measured(mesh.view(), clearance, set);
   EXPECT_LT(after.near_before, 0.1 * before.near_before);
   const ChartFindings found = check_charts(mesh.view(), set);
   EXPECT_EQ(found.fault, "");
@@ -124,7 +140,7 @@ TEST(Gaps, AreCountedInClearances) {
   const Mesh mesh = stairs(2);
   const ChartSet charts = flat_stairs(mesh);
   ChartSet set = charts;
-  const GapReport one = widen_gaps(mesh.view(), {clearances(set, 0.05), kLittle}, set, {});
+  const GapReport one = widened(mesh.view(), {clearances(set, 0.05), kLittle}, set);
   ASSERT_GT(one.near_after, 0);
   Mesh large = mesh;
   for (Vec3f& p : large.positions) p = {8 * p.x, 8 * p.y, 8 * p.z};
@@ -141,7 +157,7 @@ TEST(Gaps, AreCountedInClearances) {
       chart.distortion.surface_area *= 64;
       chart.distortion.uv_area *= 64;
     }
-    const GapReport report = widen_gaps(view, {clearance, kLittle}, scaled, {});
+    const GapReport report = widened(view, {clearance, kLittle}, scaled);
     EXPECT_EQ(report.charts, one.charts);
     EXPECT_NEAR(report.border, one.border, 1e-9 * one.border);
     EXPECT_NEAR(report.near_before, one.near_before, 1e-9 * one.near_before);
@@ -167,7 +183,7 @@ TEST(Gaps, EndThoughTrianglesAreTurnedOrWithoutArea) {
   ChartSet set = flat_stairs(mesh);
   ASSERT_GT(set.flipped_triangles.size(), 0u);
   ASSERT_EQ(set.repairs.degenerate_triangles, 2u);
-  EXPECT_EQ(widen_gaps(mesh.view(), {clearances(set, 0.05), kMaxStretch}, set, {}).charts, 1u);
+  EXPECT_EQ(widened(mesh.view(), {clearances(set, 0.05), kMaxStretch}, set).charts, 1u);
   EXPECT_EQ(check_charts(mesh.view(), set).fault, "");
 }
 
@@ -176,7 +192,7 @@ TEST(Gaps, WideningKeepsToTheBound) {
   for (const double bound : {1.05, 1.1, 1.15}) {
     ChartSet set = flat_stairs(mesh);
     if (check_charts(mesh.view(), set).stretch_999 > bound) continue;
-    widen_gaps(mesh.view(), {clearances(set, 0.09), bound}, set, {});
+    widened(mesh.view(), {clearances(set, 0.09), bound}, set);
     EXPECT_LE(check_charts(mesh.view(), set).stretch_999, bound * (1 + 1e-6));
   }
 }
@@ -185,18 +201,40 @@ TEST(Gaps, KeptChartsAndThoseOfNoInterestStay) {
   const Mesh mesh = stairs(1);
   const ChartSet before = flat_stairs(mesh);
   ChartSet set = before;
-  const GapReport nothing = widen_gaps(mesh.view(), {clearances(set, 0), kMaxStretch}, set, {});
+  const GapReport nothing = widened(mesh.view(), {clearances(set, 0), kMaxStretch}, set);
   EXPECT_EQ(nothing.charts, 0u);
   EXPECT_EQ(nothing.border, 0);
   EXPECT_EQ(nothing.near_before, 0);
   EXPECT_EQ(nothing.near_after, 0);
-  EXPECT_EQ(widen_gaps(mesh.view(), {clearances(set, 0.21), kMaxStretch}, set, {}).charts, 0u);
-  EXPECT_EQ(measure_gaps(mesh.view(), clearances(set, 0.21), set, {}).border, 0);
-  EXPECT_GT(measure_gaps(mesh.view(), clearances(set, 0.19), set, {}).border, 0);
+  EXPECT_EQ(widened(mesh.view(), {clearances(set, 0.21), kMaxStretch}, set).charts, 0u);
+  EXPECT_EQ(measured(mesh.view(), clearances(set, 0.21), set).border, 0);
+  EXPECT_GT(measured(mesh.view(), clearances(set, 0.19), set).border, 0);
   EXPECT_EQ(bytes(set), bytes(before));
   set.charts[0].kept = true;
-  EXPECT_EQ(widen_gaps(mesh.view(), {clearances(set, 0.05), kMaxStretch}, set, {}).charts, 0u);
+  EXPECT_EQ(widened(mesh.view(), {clearances(set, 0.05), kMaxStretch}, set).charts, 0u);
   set.charts[0].kept = false;
+  EXPECT_EQ(bytes(set), bytes(before));
+}
+
+TEST(Gaps, MistakesAreErrorsAndChangeNothing) {
+  const Mesh mesh = stairs(1), other = stairs(2);
+  const ChartSet before = flat_stairs(mesh);
+  ChartSet set = before;
+  const std::vector<double> clearance = clearances(set, 0.05), none;
+  const auto code = [](const Result<GapReport>& report) { return report.status().code(); };
+  EXPECT_EQ(code(measure_gaps(other.view(), clearance, set, {})), ErrorCode::bad_input);
+  EXPECT_EQ(code(measure_gaps(mesh.view(), none, set, {})), ErrorCode::bad_input);
+  EXPECT_EQ(code(widen_gaps(other.view(), {clearance, kMaxStretch}, set, {})),
+            ErrorCode::bad_input);
+  EXPECT_EQ(code(widen_gaps(mesh.view(), {none, kMaxStretch}, set, {})), ErrorCode::bad_input);
+  for (const double bound : {1.0, -2.0, std::numeric_limits<double>::quiet_NaN()})
+    EXPECT_EQ(code(widen_gaps(mesh.view(), {clearance, bound}, set, {})), ErrorCode::bad_option);
+  std::atomic<bool> cancel{true};
+  Context context;
+  context.cancel = &cancel;
+  EXPECT_EQ(code(measure_gaps(mesh.view(), clearance, set, context)), ErrorCode::cancelled);
+  EXPECT_EQ(code(widen_gaps(mesh.view(), {clearance, kMaxStretch}, set, context)),
+            ErrorCode::cancelled);
   EXPECT_EQ(bytes(set), bytes(before));
 }
 
@@ -209,7 +247,7 @@ TEST(Gaps, SameBytesForAnyThreadCount) {
     context.threads = threads;
     ChartSet set = before;
     const GapReport report =
-        widen_gaps(mesh.view(), {clearances(set, 0.05), kMaxStretch}, set, context);
+        widened(mesh.view(), {clearances(set, 0.05), kMaxStretch}, set, context);
     EXPECT_GT(report.charts, 5u);
     if (threads == 1) one = bytes(set);
     EXPECT_EQ(bytes(set), one) << threads;

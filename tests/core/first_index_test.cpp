@@ -15,7 +15,7 @@ using Key = std::array<std::uint32_t, 3>;
 std::uint32_t first_with(FirstIndex& table, std::vector<Key>& keys, const Key& key) {
   std::uint32_t& entry =
       table.find(hash_words(key), [&](std::uint32_t i) { return keys[i] == key; });
-  if (entry == FirstIndex::kNone) {
+  if (entry == kNoIndex) {
     entry = static_cast<std::uint32_t>(keys.size());
     keys.push_back(key);
   }

@@ -17,7 +17,10 @@ namespace {
 
 using testing::Disc;
 using testing::expect_consistent;
+using testing::joined;
+using testing::resumed;
 using testing::run;
+using testing::run_with;
 
 constexpr std::uint32_t kSide = 40;
 
@@ -66,8 +69,11 @@ TEST(GivenStarts, AProjectionBeyondItsOwnBoundIsNotTaken) {
   const double stretch = run(d, {.method = ParamMethod::planar}).distortion.stretch_999;
   ASSERT_GT(stretch, 1.01);
   ASSERT_LT(stretch, 1.25);
-  EXPECT_TRUE(run(d, {.max_planar_stretch = 1 + 1.1 * (stretch - 1)}).planar);
-  const ParamResult unrolled = run(d, {.max_planar_stretch = 1 + 0.9 * (stretch - 1)});
+  param::FlattenOptions options;
+  options.max_planar_stretch = 1 + 1.1 * (stretch - 1);
+  EXPECT_TRUE(run_with(d, options).planar);
+  options.max_planar_stretch = 1 + 0.9 * (stretch - 1);
+  const ParamResult unrolled = run_with(d, options);
   EXPECT_FALSE(unrolled.planar);
   EXPECT_LT(unrolled.distortion.stretch_999, 1.001);
 }
@@ -75,12 +81,12 @@ TEST(GivenStarts, AProjectionBeyondItsOwnBoundIsNotTaken) {
 // Whoever is content with the bound for small places does not get the whole lowered to an aim.
 TEST(GivenStarts, NothingIsAimedAtWhereTheBoundIsEnough) {
   const Disc d = testing::make_cap(0.9, 16);
-  ParamOptions options{.method = ParamMethod::isometric};
+  param::FlattenOptions options{{.method = ParamMethod::isometric}};
   options.local = true;
-  const ParamResult plain = run(d, options);
+  const ParamResult plain = run_with(d, options);
   ASSERT_TRUE(plain.within_bound);
   options.aimed_stretch = 1.01;
-  EXPECT_EQ(run(d, options).uvs, plain.uvs);
+  EXPECT_EQ(run_with(d, options).uvs, plain.uvs);
 }
 
 TEST(GivenStarts, ResumingMovesOnlyWhatIsAtFault) {
@@ -90,10 +96,9 @@ TEST(GivenStarts, ResumingMovesOnlyWhatIsAtFault) {
   for (const double far : {0.0, 0.7, 1.5}) {  // none; almost at the next vertex; beyond it
     std::vector<Vec2d> uvs = start;
     uvs[kSide / 2 * (kSide + 1) + kSide / 2].x += far / kSide;
-    ParamOptions options{.method = ParamMethod::isometric};
-    options.resume = options.local = true;
-    options.start.uvs = uvs;
-    const ParamResult r = run(d, options);
+    param::FlattenOptions options;
+    options.local = true;
+    const ParamResult r = resumed(d, uvs, options);
     expect_consistent(d, r, options.max_stretch);
     EXPECT_TRUE(r.injective && r.within_bound) << far;
     expect_sheared_far_from_the_middle(d, r, far > 0 ? 15 : 0);
@@ -106,10 +111,7 @@ TEST(GivenStarts, ResumingKeepsWhatIsAlmostIsometric) {
   std::vector<Vec2d> start;
   for (const Vec3d& p : d.positions) start.push_back({p.x + 0.002 * p.y, p.y});
   const Distortion before = measure_distortion(d.view(), start);
-  ParamOptions options{.method = ParamMethod::isometric};
-  options.resume = true;
-  options.start.uvs = start;
-  const ParamResult r = run(d, options);
+  const ParamResult r = resumed(d, start);
   ASSERT_TRUE(r.injective && r.within_bound);
   EXPECT_NEAR(r.distortion.stretch_999 - 1, before.stretch_999 - 1, 1e-6);
   for (std::size_t v = 0; v < start.size(); ++v) {
@@ -130,16 +132,11 @@ TEST(GivenStarts, TrianglesWithoutAreaGetTheLeastAltitude) {
   for (const auto& triangle : d.triangles) {
     for (const std::uint32_t v : triangle) corners.push_back(start[v]);
   }
-  ParamOptions resumed{.method = ParamMethod::isometric, .min_altitude = altitude};
-  resumed.resume = true;
-  resumed.start.uvs = start;
-  ParamOptions joined{.method = ParamMethod::isometric, .min_altitude = altitude};
-  joined.joined = corners;
-  for (const ParamOptions& options : {resumed, joined}) {
-    const ParamResult r = run(d, options);
+  const param::FlattenOptions options{{.method = ParamMethod::isometric, .min_altitude = altitude}};
+  for (const ParamResult& r : {resumed(d, start, options), joined(d, {corners}, options)}) {
     EXPECT_TRUE(r.injective);
     const Injectivity check = check_injectivity(d.view(), r.uvs, {.clearance = 0.3 * altitude});
-    EXPECT_TRUE(check.thin.empty()) << check.thin.size() << " " << options.resume;
+    EXPECT_TRUE(check.thin.empty()) << check.thin.size();
   }
 }
 
@@ -159,10 +156,9 @@ TEST(GivenStarts, APatchIsFittedInWhereItIs) {
       corners.push_back(sheared({0.5 + size * (p.x - 0.5), 0.5 + size * (p.y - 0.5), 0}));
     }
   }
-  ParamOptions options{.method = ParamMethod::isometric};
-  options.joined = corners;
-  options.patch = options.local = true;
-  const ParamResult r = run(d, options);
+  param::FlattenOptions options{{.method = ParamMethod::isometric}};
+  options.local = true;
+  const ParamResult r = joined(d, {.corner_uvs = corners, .patch = true}, options);
   expect_consistent(d, r, options.max_stretch);
   EXPECT_TRUE(r.injective && r.within_bound);
   expect_sheared_far_from_the_middle(d, r, 10);

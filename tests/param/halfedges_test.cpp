@@ -15,7 +15,6 @@ namespace {
 // Many triangles on few vertices: edges are shared by many triangles in either direction, and some
 // triangles have a vertex twice. Pairs are made in order.
 TEST(HalfEdges, OppositesAreTheFirstThatAreFree) {
-  constexpr std::uint32_t none = param::HalfEdges::none;
   for (unsigned seed = 0; seed < 50; ++seed) {
     std::mt19937 random(seed);
     std::vector<std::array<std::uint32_t, 3>> triangles;
@@ -26,10 +25,10 @@ TEST(HalfEdges, OppositesAreTheFirstThatAreFree) {
     const auto from = [&](std::uint32_t h) { return triangles[h / 3][h % 3]; };
     const auto to = [&](std::uint32_t h) { return triangles[h / 3][(h % 3 + 1) % 3]; };
     const auto count = static_cast<std::uint32_t>(3 * triangles.size());
-    std::vector<std::uint32_t> wanted(count, none);
+    std::vector<std::uint32_t> wanted(count, kNoIndex);
     for (std::uint32_t h = 0; h < count; ++h) {
-      for (std::uint32_t g = 0; g < count && wanted[h] == none; ++g) {
-        if (g == h || wanted[g] != none || from(g) != to(h) || to(g) != from(h)) continue;
+      for (std::uint32_t g = 0; g < count && wanted[h] == kNoIndex; ++g) {
+        if (g == h || wanted[g] != kNoIndex || from(g) != to(h) || to(g) != from(h)) continue;
         wanted[h] = g;
         wanted[g] = h;
       }
@@ -45,7 +44,7 @@ TEST(HalfEdges, OppositesAreTheFirstThatAreFree) {
 TEST(HalfEdges, OppositesThatAreGivenCount) {
   const std::vector<Vec3d> positions(4);
   const std::vector<std::array<std::uint32_t, 3>> triangles{{0, 1, 2}, {0, 2, 3}};
-  const std::vector<std::uint32_t> none(6, param::HalfEdges::none);
+  const std::vector<std::uint32_t> none(6, kNoIndex);
   LocalMesh mesh{positions, triangles, {}};
   mesh.opposite = none;
   param::HalfEdges half_edges;

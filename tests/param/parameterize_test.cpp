@@ -18,7 +18,9 @@ namespace {
 
 using testing::Disc;
 using testing::expect_consistent;
+using testing::joined;
 using testing::run;
+using testing::run_with;
 
 TEST(Parameterize, ProjectsWhatIsNearlyFlat) {
   const Disc d = testing::make_grid(20, 20, [](double u, double v) {
@@ -57,10 +59,10 @@ TEST(Parameterize, LargeMeshesGoOnAfterTheyWereMeasured) {
   EXPECT_TRUE(unrolled.injective);
   EXPECT_LT(unrolled.distortion.stretch_999, 1.001);
   const Disc cap = testing::make_cap(1.1, 190);
-  ParamOptions options{.method = ParamMethod::isometric};
+  param::FlattenOptions options{{.method = ParamMethod::isometric}};
   const double plain = run(cap, options).distortion.stretch_999;
   options.aimed_stretch = 1.1;  // cannot be reached, but is tried
-  const ParamResult squeezed = run(cap, options);
+  const ParamResult squeezed = run_with(cap, options);
   EXPECT_TRUE(squeezed.injective);
   EXPECT_LT(squeezed.distortion.stretch_999, plain);
 }
@@ -165,7 +167,9 @@ TEST(Parameterize, LeavesCrossingsThatTheBoundKeepsTogether) {
       const double a = (2 * std::numbers::pi + excess) * u, r = 1 + 0.5 * v;
       return Vec3d{r * std::cos(a), r * std::sin(a), 0.002 * a};
     });
-    const ParamResult r = run(d, {.max_stretch = 1.01, .leave_crossings = true});
+    param::FlattenOptions options{{.max_stretch = 1.01}};
+    options.leave_crossings = true;
+    const ParamResult r = run_with(d, options);
     expect_consistent(d, r, 1.01);
     EXPECT_TRUE(r.within_bound) << excess;
     EXPECT_FALSE(r.crossings.empty()) << excess;
@@ -195,8 +199,7 @@ TEST(Parameterize, JoinsFlatPartsAsTheyAre) {
   }
   ParamOptions options;
   options.method = ParamMethod::isometric;
-  options.joined = corners;
-  const ParamResult r = run(d, options);
+  const ParamResult r = joined(d, {corners}, {options});
   expect_consistent(d, r, options.max_stretch);
   EXPECT_TRUE(r.injective && r.within_bound);
   std::vector<TriangleStretch> s(d.triangles.size());

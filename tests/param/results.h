@@ -4,8 +4,9 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <span>
 
-#include "libatlas/param/parameterize.h"
+#include "libatlas/param/flatten_disc.h"
 #include "tests/param/shapes.h"
 
 namespace atlas::testing {
@@ -13,6 +14,23 @@ namespace atlas::testing {
 inline ParamResult run(const Disc& d, const ParamOptions& options = {}) {
   ParamWorkspace workspace;
   return parameterize(d.view(), options, workspace);
+}
+
+inline ParamResult run_with(const Disc& d, const param::FlattenOptions& options) {
+  ParamWorkspace workspace;
+  return param::flatten_disc(d.view(), options, workspace);
+}
+
+inline ParamResult resumed(const Disc& d, std::span<const Vec2d> uvs,
+                           const param::FlattenOptions& options = {}) {
+  ParamWorkspace workspace;
+  return param::resume_flattening(d.view(), uvs, options, workspace);
+}
+
+inline ParamResult joined(const Disc& d, const param::FlatParts& parts,
+                          const param::FlattenOptions& options = {}) {
+  ParamWorkspace workspace;
+  return param::join_flat_parts(d.view(), parts, options, workspace);
 }
 
 // Expects what must hold for every result, whatever the input.

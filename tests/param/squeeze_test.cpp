@@ -18,6 +18,7 @@ namespace {
 using testing::Disc;
 using testing::expect_consistent;
 using testing::run;
+using testing::run_with;
 
 // Milnor 1969, "A problem in cartography": no map of a cap of half-angle a has a smaller ratio of
 // its greatest to its least scale than a / sin a, which the azimuthal equidistant projection
@@ -65,8 +66,9 @@ TEST(Squeeze, ReachesABoundThatDescentMisses) {
   const ParamResult r = run(d, squeezed);
   expect_consistent(d, r, squeezed.max_stretch);
   EXPECT_TRUE(r.within_bound) << reached << " -> " << r.distortion.stretch_999;
-  squeezed.local = true;  // so many triangles stretch that relaxing few places is not possible
-  EXPECT_TRUE(run(d, squeezed).within_bound);
+  param::FlattenOptions local{squeezed};
+  local.local = true;  // so many triangles stretch that relaxing few places is not possible
+  EXPECT_TRUE(run_with(d, local).within_bound);
 }
 
 // A strip of flat faces that are folded by right angles, with a small ear between two faces at both
@@ -130,12 +132,12 @@ TEST(Squeeze, FlatFacesDoNotGiveWayToASharpVertex) {
   for (const double degrees : {130.0, 135.0, 140.0}) {
     for (const double ear : {0.06, 0.1, 0.14}) {
       const Disc d = eared_strip(7, degrees * std::numbers::pi / 180, ear);
-      ParamOptions options{.method = ParamMethod::isometric, .iterations = 30};
+      param::FlattenOptions options{{.method = ParamMethod::isometric, .iterations = 30}};
       options.squeeze_iterations = 0;
       EXPECT_FALSE(run(d, options).within_bound);
       options.squeeze_iterations = 12;
       options.aimed_stretch = 1.18;
-      const ParamResult r = run(d, options);
+      const ParamResult r = run_with(d, options);
       expect_consistent(d, r, options.max_stretch);
       ASSERT_TRUE(r.within_bound && r.injective);
       const double least = searched_l2(d, r.uvs, options.max_stretch);
@@ -150,12 +152,12 @@ TEST(Squeeze, CurvedSurfacesComeDownToTheAim) {
     const double x = 2 * u - 1, y = 2 * v - 1;
     return Vec3d{x, y, 0.55 * (x * x - y * y)};
   });
-  ParamOptions options{.max_stretch = 1.25, .method = ParamMethod::isometric};
+  param::FlattenOptions options{{.max_stretch = 1.25, .method = ParamMethod::isometric}};
   options.squeeze_iterations = 0;
   const Distortion before = run(d, options).distortion;
   options.squeeze_iterations = 12;
   options.aimed_stretch = 1 + 0.8 * (before.stretch_999 - 1);
-  const Distortion after = run(d, options).distortion;
+  const Distortion after = run_with(d, options).distortion;
   EXPECT_LE(after.stretch_999, options.aimed_stretch);
   EXPECT_LT(after.stretch_l2 - 1, 1.4 * (before.stretch_l2 - 1));
 }

@@ -58,7 +58,7 @@ double least_gap(const Flat& flat, double far) {
   param::HalfEdges half_edges;
   half_edges.build(flat.disc.view());
   for (std::uint32_t h = 0; h < 3 * flat.disc.triangles.size(); ++h) {
-    if (half_edges.opposite(h) != param::HalfEdges::none) continue;
+    if (half_edges.opposite(h) != kNoIndex) continue;
     const std::uint32_t a = half_edges.from(h), b = half_edges.to(h);
     for (const double t : {0.0, 0.25, 0.5, 0.75}) {
       const auto mix = [t](double x, double y) { return x + t * (y - x); };
@@ -82,7 +82,7 @@ TEST(Widen, FarPartsEndAClearanceApart) {
   Flat flat = stair(1, kGap);
   ASSERT_LT(least_gap(flat, 4 * kClearance), 0.02);
   const double before = measure_distortion(flat.disc.view(), flat.uvs).stretch_l2;
-  const Widened widened = widen_gaps(flat.disc.view(), with(kClearance), flat.uvs);
+  const Widened widened = widen_mesh_gaps(flat.disc.view(), with(kClearance), flat.uvs);
   EXPECT_TRUE(widened.moved);
   EXPECT_GT(widened.near_before, 0.7);
   EXPECT_EQ(widened.near_after, 0);
@@ -99,7 +99,7 @@ TEST(Widen, FarPartsEndAClearanceApart) {
 TEST(Widen, WhatIsOnePlaceOfTheSurfaceStays) {
   Flat flat = stair(0, kGap);
   const std::vector<Vec2d> before = flat.uvs;
-  const Widened widened = widen_gaps(flat.disc.view(), with(kClearance), flat.uvs);
+  const Widened widened = widen_mesh_gaps(flat.disc.view(), with(kClearance), flat.uvs);
   EXPECT_FALSE(widened.moved);
   EXPECT_EQ(widened.near_before, 0);
   for (std::size_t v = 0; v < before.size(); ++v) {
@@ -114,7 +114,7 @@ TEST(Widen, TheBoundIsKept) {
     Flat flat = stair(1, kGap);
     const double bound = measure_distortion(flat.disc.view(), flat.uvs).stretch_999 * (1 + slack);
     const double gap = least_gap(flat, 4 * kClearance);
-    widen_gaps(flat.disc.view(), with(kClearance, bound), flat.uvs);
+    widen_mesh_gaps(flat.disc.view(), with(kClearance, bound), flat.uvs);
     EXPECT_LE(measure_distortion(flat.disc.view(), flat.uvs).stretch_999, bound) << slack;
     EXPECT_GE(least_gap(flat, 4 * kClearance), gap * (1 - 1e-9)) << slack;
     EXPECT_TRUE(testing::injective_by_pairs(flat.disc.view(), flat.uvs)) << slack;
@@ -127,7 +127,7 @@ TEST(Widen, TheBoundIsNotBelowTheStretchBefore) {
   const std::uint32_t columns = 60, middle = 30;
   for (std::uint32_t row = 1; row < 6; row += 2) flat.uvs[row * (columns + 1) + middle].x -= 0.02;
   const double before = measure_distortion(flat.disc.view(), flat.uvs).stretch_999;
-  const Widened widened = widen_gaps(flat.disc.view(), with(kClearance, 1.01), flat.uvs);
+  const Widened widened = widen_mesh_gaps(flat.disc.view(), with(kClearance, 1.01), flat.uvs);
   EXPECT_TRUE(widened.moved);
   EXPECT_EQ(widened.near_after, 0);
   EXPECT_GT(least_gap(flat, 4 * kClearance), 0.99 * kClearance);
@@ -139,7 +139,7 @@ TEST(Widen, PartsThatAlmostTouchAreMovedApart) {
   for (const double gap : {1e-6, 1e-12, 1e-15}) {
     Flat flat = stair(1, gap);
     ASSERT_TRUE(check_injectivity(flat.disc.view(), flat.uvs).injective) << gap;
-    EXPECT_TRUE(widen_gaps(flat.disc.view(), with(kClearance), flat.uvs).moved) << gap;
+    EXPECT_TRUE(widen_mesh_gaps(flat.disc.view(), with(kClearance), flat.uvs).moved) << gap;
     EXPECT_GT(least_gap(flat, 4 * kClearance), 0.99 * kClearance) << gap;
     EXPECT_TRUE(check_injectivity(flat.disc.view(), flat.uvs).injective) << gap;
   }
@@ -147,10 +147,10 @@ TEST(Widen, PartsThatAlmostTouchAreMovedApart) {
 
 TEST(Widen, UnitsOfLengthDoNotMatter) {
   Flat one = stair(1, kGap);
-  widen_gaps(one.disc.view(), with(kClearance), one.uvs);
+  widen_mesh_gaps(one.disc.view(), with(kClearance), one.uvs);
   for (const double scale : {std::ldexp(1.0, -20), 1024.0}) {
     Flat other = stair(1, kGap, scale);
-    widen_gaps(other.disc.view(), with(kClearance * scale), other.uvs);
+    widen_mesh_gaps(other.disc.view(), with(kClearance * scale), other.uvs);
     for (std::size_t v = 0; v < one.uvs.size(); ++v) {
       ASSERT_NEAR(other.uvs[v].x / scale, one.uvs[v].x, 1e-9) << scale;
       ASSERT_NEAR(other.uvs[v].y / scale, one.uvs[v].y, 1e-9) << scale;
@@ -160,7 +160,7 @@ TEST(Widen, UnitsOfLengthDoNotMatter) {
 
 TEST(Widen, LooksWithoutMoving) {
   const Flat flat = stair(1, kGap);
-  const Widened seen = measure_gaps(flat.disc.view(), kClearance, flat.uvs);
+  const Widened seen = measure_mesh_gaps(flat.disc.view(), kClearance, flat.uvs);
   EXPECT_FALSE(seen.moved);
   // The border consists of two ends of length 0.4 and two nearly closed circles.
   EXPECT_NEAR(seen.border, 0.8 + 2 * kPi * 2.4, 0.05);
@@ -189,7 +189,7 @@ TEST(Widen, FindsWhatIsNearerThanTheClearanceAndNothingElse) {
     const double angle = degrees * kPi / 180;
     const auto near = [&](double gap) {
       const Flat flat = legs(gap, angle);
-      return measure_gaps(flat.disc.view(), kClearance, flat.uvs).near_before;
+      return measure_mesh_gaps(flat.disc.view(), kClearance, flat.uvs).near_before;
     };
     EXPECT_NEAR(near(0.99 * kClearance), 2, 0.2) << degrees;  // both legs
     EXPECT_EQ(near(1.01 * kClearance), 0) << degrees;
@@ -206,8 +206,8 @@ TEST(Widen, DensityScalesTheSurface) {
     const std::vector<double> two(dense.disc.triangles.size(), 2);
     LocalMesh mesh = dense.disc.view();
     mesh.density = two;
-    const Widened seen = measure_gaps(mesh, 2 * kClearance, dense.uvs);
-    const Widened wanted = measure_gaps(plain.disc.view(), kClearance, plain.uvs);
+    const Widened seen = measure_mesh_gaps(mesh, 2 * kClearance, dense.uvs);
+    const Widened wanted = measure_mesh_gaps(plain.disc.view(), kClearance, plain.uvs);
     EXPECT_EQ(wanted.near_before > 0, rise > 3 * kClearance);
     EXPECT_EQ(seen.near_before, 2 * wanted.near_before) << rise;
   }

@@ -1,12 +1,9 @@
 // Thin sheets of two layers, from lit scene to written file: each side shows its own light alone.
-#include "libatlas/pipeline/one_sided.h"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <functional>
 #include <map>
 #include <string>
 #include <vector>
@@ -15,55 +12,11 @@
 #include "libatlas/pipeline/export_world.h"
 #include "tests/pipeline/lit_scene.h"
 #include "tests/scene/temp_folder.h"
+#include "tests/sheets/two_layers.h"
 #include "tests/support/gltf_oracle.h"
 
 namespace atlas::test {
 namespace {
-
-using Height = std::function<double(double, double)>;
-
-// A height field over [0, width] x [0, 1].
-struct Layer {
-  int cells = 12;  // along each side of the square [0, 1] x [0, 1]
-  double width = 1;
-  bool from_above = true;  // its orientation
-  bool other_diagonals = false;
-  float light = 100;
-};
-
-void add_layer(const Layer& layer, const Height& height, Scene& scene) {
-  const auto base = std::uint32_t(scene.positions.size());
-  const int columns = int(std::lround(layer.cells * layer.width));
-  for (int j = 0; j <= layer.cells; ++j) {
-    for (int i = 0; i <= columns; ++i) {
-      const double x = double(i) / layer.cells, y = double(j) / layer.cells;
-      scene.positions.push_back({float(x), float(y), float(height(x, y))});
-      scene.illumination.push_back({layer.light, layer.light, layer.light});
-    }
-  }
-  const auto row = std::uint32_t(columns + 1);
-  for (int j = 0; j < layer.cells; ++j) {
-    for (int i = 0; i < columns; ++i) {
-      const std::uint32_t v = base + std::uint32_t(j) * row + std::uint32_t(i);
-      std::array<std::uint32_t, 6> k{v, v + 1, v + row + 1, v, v + row + 1, v + row};
-      if (layer.other_diagonals) k = {v, v + 1, v + row, v + 1, v + row + 1, v + row};
-      if (!layer.from_above) std::reverse(k.begin(), k.end());
-      scene.indices.insert(scene.indices.end(), k.begin(), k.end());
-    }
-  }
-}
-
-LoadedScene sheet(const Layer& above, const Layer& below, const Height& height) {
-  LoadedScene loaded;
-  Scene& scene = loaded.scene;
-  add_layer(above, height, scene);
-  add_layer(below, height, scene);
-  scene.triangle_material.assign(scene.triangle_count(), 0);
-  scene.triangle_object.assign(scene.triangle_count(), 0);
-  scene.materials.push_back({"white", {0.8f, 0.8f, 0.8f}, -1});
-  scene.object_names.push_back("sheet");
-  return loaded;
-}
 
 struct Corner {
   double x, y, z, u, v;
@@ -158,8 +111,6 @@ void expect_own_light(const Exported& world, double width) {
   }
 }
 
-const Layer kBelow{.from_above = false, .light = 1};
-
 TEST(OneSided, EachSideOfASheetShowsItsOwnLight) {
   const Height flat = [](double, double) { return 0.0; };
   const Height slanted = [](double x, double y) { return 0.31 * x + 0.77 * y; };
@@ -207,28 +158,6 @@ TEST(OneSided, OtherScenesStayDoubleSided) {
   EXPECT_EQ(Exported(lit_room(12), true).one_sided(), 0u);
   const Shape on_floor = together(grid(40, 40, 10, 10), moved(box(3), 1, {4.1, 4.1, 0}));
   EXPECT_EQ(Exported(lit_scene(on_floor), true).one_sided(), 0u);
-}
-
-// The layers are the same on any number of threads, and in any unit of length.
-TEST(OneSided, ThreadsAndUnitsDoNotMatter) {
-  const Height flat = [](double, double) { return 0.0; };
-  for (const float unit : {1e-6f, 1.0f, 1e6f}) {
-    LoadedScene loaded = sheet({}, {.cells = 7, .from_above = false, .light = 1}, flat);
-    for (Vec3f& p : loaded.scene.positions) p = {p.x * unit, p.y * unit, p.z * unit};
-    MeshView mesh;
-    mesh.positions = loaded.scene.positions;
-    mesh.indices = loaded.scene.indices;
-    const auto charts = make_charts(mesh, {}, {});
-    ASSERT_TRUE(charts.ok());
-    const ChartedMesh fine(loaded.scene.indices, *charts);
-    for (const int threads : {1, 2, 5}) {
-      Context context;
-      context.threads = threads;
-      EXPECT_EQ(one_sided_triangles(loaded.scene, *charts, fine.view(), context),
-                std::vector<bool>(loaded.scene.triangle_count(), true))
-          << unit;
-    }
-  }
 }
 
 }  // namespace

@@ -14,7 +14,6 @@ namespace {
 
 using simplify::FineChart;
 using simplify::Geometry;
-using simplify::kNone;
 
 FineChart fine_chart(const ChartedMesh& mesh, std::uint32_t chart = 0) {
   const MeshView view = mesh.view();
@@ -48,13 +47,13 @@ std::uint32_t uv_from(const FineChart& fine, std::uint32_t h) {
   return fine.vertex_uv[fine.corners[h]];
 }
 std::uint32_t uv_to(const FineChart& fine, std::uint32_t h) {
-  return uv_from(fine, simplify::next_half(h));
+  return uv_from(fine, next_half_edge(h));
 }
 
 // Returns the half-edge on the other side by the definition: exactly two half-edges lie between
 // these two uvs, in opposite directions.
 std::uint32_t other_side(const FineChart& fine, std::uint32_t h) {
-  std::uint32_t other = kNone;
+  std::uint32_t other = kNoIndex;
   int count = 0;
   for (std::uint32_t k = 0; k < fine.corners.size(); ++k) {
     const bool along = uv_from(fine, k) == uv_from(fine, h) && uv_to(fine, k) == uv_to(fine, h);
@@ -62,7 +61,7 @@ std::uint32_t other_side(const FineChart& fine, std::uint32_t h) {
     count += along || against;
     if (against) other = k;
   }
-  return count == 2 ? other : kNone;
+  return count == 2 ? other : kNoIndex;
 }
 
 TEST(FineChart, NeighboursAreTheOnlyTwoTrianglesAtAnEdge) {
@@ -82,9 +81,9 @@ std::set<std::uint32_t> fan(const FineChart& fine, std::uint32_t corner) {
     const std::uint32_t h = stack.back();
     stack.pop_back();
     if (!out.insert(h).second) continue;
-    const std::uint32_t before = simplify::previous_half(h);
-    if (fine.opposite[before] != kNone) stack.push_back(fine.opposite[before]);
-    if (fine.opposite[h] != kNone) stack.push_back(simplify::next_half(fine.opposite[h]));
+    const std::uint32_t before = previous_half_edge(h);
+    if (fine.opposite[before] != kNoIndex) stack.push_back(fine.opposite[before]);
+    if (fine.opposite[h] != kNoIndex) stack.push_back(next_half_edge(fine.opposite[h]));
   }
   return out;
 }
@@ -102,13 +101,13 @@ TEST(FineChart, AVertexIsOneFanOfTriangles) {
       for (std::uint32_t k = 0; k < fine.corners.size(); ++k) {
         if (fine.corners[k] == fine.corners[h]) found.insert(k);
       }
-      for (const std::uint32_t k : expected) border = border || fine.opposite[k] == kNone;
+      for (const std::uint32_t k : expected) border = border || fine.opposite[k] == kNoIndex;
       EXPECT_EQ(found, expected) << "seed " << seed << ", corner " << h;
       EXPECT_EQ(fine.border(fine.corners[h]), border);
       EXPECT_TRUE(expected.count(fine.vertex_half[fine.corners[h]]));
       if (!border) continue;
       const std::uint32_t into = fine.border_into(fine.corners[h]);
-      EXPECT_EQ(fine.opposite[into], kNone);
+      EXPECT_EQ(fine.opposite[into], kNoIndex);
       EXPECT_EQ(fine.to(into), fine.corners[h]);
     }
   }

@@ -86,74 +86,110 @@ float through_needles(const Topology& topology, std::uint32_t h, float step) {
   return std::clamp(2 * areas / shared, kLeastNeedleStep * step, step);
 }
 
-// The last pass: assigns each triangle to a seed.
-Cells grow_triangles(const CellInput& input, const Grains& grains, const CellSeeds& seeds,
-                     const Context& context) {
-  const Topology& topology = input.topology;
-  constexpr std::uint32_t visits_between_looks = 4096;
-  const std::size_t n = topology.triangle_count(), cells = seeds.grain.size();
-  std::vector<std::uint32_t> seed(cells, kNoIndex);
-  const std::vector<CellRuler> rulers = triangle_rulers(topology);
-  std::vector<float> best(cells, kFar);
-  std::vector<Ground> ground = lay_ground(topology);
-  for (std::uint32_t t = 0; t < n; ++t) {
-    const std::uint32_t g = grains.of_triangle[t];
-    if (g == kNoIndex || seeds.grain[seeds.owner[g]] != g) continue;
-    const CellRuler& ruler = rulers[topology.component[t]];
-    const float d = glm::distance(ground[t].middle, grains.centroid[g]);
-    const std::uint32_t s = seeds.owner[g];
-    if (ruler.shorter(d, best[s])) {
-      best[s] = d;
-      seed[s] = t;
-    }
-  }
-  RingQueue<Arrival> queue;
-  std::uint32_t visits = 0;
-  const auto piece = [&](std::uint32_t s) { return grains.component[seeds.grain[s]]; };
-  for (std::uint32_t next = 0; next < cells || !queue.empty();) {
-    // One piece after the other: its seeds are contiguous, and the queue stays small.
-    if (queue.empty()) {
-      const std::uint32_t first = next;
-      queue.restart();
-      for (; next < cells && piece(next) == piece(first); ++next) {
-        // Where grains coincide, a cell may have no seed triangle, or the same one as another.
-        if (seed[next] == kNoIndex || ground[seed[next]].cell != kNoIndex) continue;
-        ground[seed[next]].distance = 0;
-        ground[seed[next]].cell = next;
-        queue.push({0, seed[next]});
+// The last pass: assigns each triangle to the seed of a cell.
+class TriangleGrowth {
+ public:
+  TriangleGrowth(const CellInput& input, const Grains& grains, const CellSeeds& seeds)
+      : input_(input),
+        topology_(input.topology),
+        grains_(grains),
+        seeds_(seeds),
+        rulers_(triangle_rulers(topology_)),
+        ground_(lay_ground(topology_)),
+        seed_triangle_(seed_triangles()) {}
+
+  // Returns nothing once cancelled.
+  Cells run(const Context& context) {
+    constexpr std::uint32_t visits_between_looks = 4096;
+    std::uint32_t visits = 0;
+    while (begin_piece()) {
+      while (!queue_.empty()) {
+        if (++visits % visits_between_looks == 0 && context.cancelled()) return {};
+        const Arrival visit = queue_.pop();
+        fetch_ahead(topology_, ground_, queue_);
+        if (ground_[visit.node].distance >= 0) spread(visit);
       }
-      continue;
     }
-    if (++visits % visits_between_looks == 0 && context.cancelled()) return {};
-    const Arrival visit = queue.pop();
-    fetch_ahead(topology, ground, queue);
-    Ground& here = ground[visit.node];
-    if (here.distance < 0) continue;
+    return cells();
+  }
+
+ private:
+  // Returns for each cell the triangle of its seed's grain that is nearest to the grain's centroid.
+  // Where grains coincide, a cell may have none, or the same one as another.
+  std::vector<std::uint32_t> seed_triangles() const {
+    std::vector<std::uint32_t> seed(seeds_.grain.size(), kNoIndex);
+    std::vector<float> best(seed.size(), kFar);
+    for (std::uint32_t t = 0; t < ground_.size(); ++t) {
+      const std::uint32_t g = grains_.of_triangle[t];
+      if (g == kNoIndex || seeds_.grain[seeds_.owner[g]] != g) continue;
+      const float d = glm::distance(ground_[t].middle, grains_.centroid[g]);
+      const std::uint32_t s = seeds_.owner[g];
+      if (rulers_[topology_.component[t]].shorter(d, best[s])) {
+        best[s] = d;
+        seed[s] = t;
+      }
+    }
+    return seed;
+  }
+
+  // Fills the queue with the seeds of the next piece that has any. They are contiguous, and with
+  // one piece after the other the queue stays small. Returns false after the last piece.
+  bool begin_piece() {
+    const auto piece = [&](std::uint32_t s) { return grains_.component[seeds_.grain[s]]; };
+    while (queue_.empty() && next_ < seed_triangle_.size()) {
+      const std::uint32_t first = next_;
+      queue_.restart();
+      for (; next_ < seed_triangle_.size() && piece(next_) == piece(first); ++next_) {
+        const std::uint32_t t = seed_triangle_[next_];
+        if (t == kNoIndex || ground_[t].cell != kNoIndex) continue;
+        ground_[t].distance = 0;
+        ground_[t].cell = next_;
+        queue_.push({0, t});
+      }
+    }
+    return !queue_.empty();
+  }
+
+  // Makes the cell of a triangle final, and offers its neighbours to that cell.
+  void spread(const Arrival& visit) {
+    Ground& here = ground_[visit.node];
     const float so_far = std::exchange(here.distance, -1.0f);
     const std::uint32_t own = here.cell;
-    const glm::vec3 from = here.middle, axis = seeds.normal[own];
-    const CellRuler& ruler = rulers[topology.component[visit.node]];
+    const glm::vec3 from = here.middle, axis = seeds_.normal[own];
+    const CellRuler& ruler = rulers_[topology_.component[visit.node]];
     for (std::uint32_t h = 3 * visit.node; h < 3 * visit.node + 3; ++h) {
-      const std::uint32_t o = topology.opposite[h];
-      if (o == kNoIndex || input.walled(visit.node, o / 3)) continue;
-      Ground& next_to = ground[o / 3];
+      const std::uint32_t o = topology_.opposite[h];
+      if (o == kNoIndex || input_.walled(visit.node, o / 3)) continue;
+      Ground& next_to = ground_[o / 3];
       if (next_to.distance < 0) continue;
       float step = glm::distance(from, next_to.middle);
-      if (glm::dot(here.normal, next_to.normal) > kFlatCosine) {
-        step = through_needles(topology, h, step);
-      }
+      if (glm::dot(here.normal, next_to.normal) > kFlatCosine)
+        step = through_needles(topology_, h, step);
       const float distance = so_far + cell_distance(step, next_to.normal, axis);
       if (!ruler.take(distance, own, next_to.distance, next_to.cell)) continue;
-      queue.push({std::max(ruler.key(distance), visit.key), o / 3});
+      queue_.push({std::max(ruler.key(distance), visit.key), o / 3});
     }
   }
-  Cells result;
-  result.count = static_cast<std::uint32_t>(cells);
-  result.of_triangle.reserve(n);
-  for (const Ground& g : ground) result.of_triangle.push_back(g.cell);
-  pull_teeth(topology, input.regions, result);
-  return result;
-}
+
+  Cells cells() const {
+    Cells result;
+    result.count = static_cast<std::uint32_t>(seed_triangle_.size());
+    result.of_triangle.reserve(ground_.size());
+    for (const Ground& g : ground_) result.of_triangle.push_back(g.cell);
+    pull_teeth(topology_, input_.regions, result);
+    return result;
+  }
+
+  const CellInput& input_;
+  const Topology& topology_;
+  const Grains& grains_;
+  const CellSeeds& seeds_;
+  const std::vector<CellRuler> rulers_;       // one per piece
+  std::vector<Ground> ground_;                // one per triangle
+  std::vector<std::uint32_t> seed_triangle_;  // one per cell, or kNoIndex
+  RingQueue<Arrival> queue_;
+  std::uint32_t next_ = 0;  // the first cell of the pieces to come
+};
 
 }  // namespace
 
@@ -164,7 +200,7 @@ Cells grow_cells(const CellInput& input, const CellOptions& options, const Conte
   const Grains grains = grow_grains(input);
   const CellSeeds seeds = choose_seeds(input, grains, options, context);
   if (context.cancelled()) return {};
-  return grow_triangles(input, grains, seeds, context);
+  return TriangleGrowth(input, grains, seeds).run(context);
 }
 
 }  // namespace atlas

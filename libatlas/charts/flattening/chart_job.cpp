@@ -10,6 +10,7 @@
 #include "libatlas/core/clock.h"
 #include "libatlas/core/degrees.h"
 #include "libatlas/core/glm_bridge.h"
+#include "libatlas/param/flatten_disc.h"
 #include "libatlas/param/orient.h"
 
 namespace atlas {
@@ -272,13 +273,13 @@ class ChartJob {
 
   double min_altitude() const { return kMinAltitude * std::sqrt(surface_area()); }
 
-  ParamOptions param_options(const LocalMesh& mesh) {
+  param::FlattenOptions flatten_options(std::size_t triangles) const {
     const ChartOptions& options = input_.options;
-    ParamOptions param;
+    param::FlattenOptions param;
     param.max_stretch = options.max_stretch;
     const bool best = options.preset == ChartPreset::best;
     const double aim = best ? kBestStretch : kAimedStretch;
-    if (best || (options.preset == ChartPreset::standard && mesh.triangles.size() < kLargeChart)) {
+    if (best || (options.preset == ChartPreset::standard && triangles < kLargeChart)) {
       param.aimed_stretch = std::min(options.max_stretch, aim);
     }
     param.local = noisy() || task_.little;
@@ -291,19 +292,23 @@ class ChartJob {
                  options.preset == ChartPreset::fast ? kFastPlanarStretch : kPlanarStretch);
     param.axis = from_glm(glm::dvec3(to_glm(cone_.axis)));
     param.min_altitude = min_altitude();
+    return param;
+  }
+
+  ParamResult solve(const LocalMesh& mesh) {
+    ParamWorkspace& workspace = scratch_.workspace;
+    param::FlattenOptions options = flatten_options(mesh.triangles.size());
     if (!kept_uvs_.empty() && place_newcomers(mesh, kept_uvs_, start_uvs_)) {
-      param.start.uvs = start_uvs_;
-      param.resume = true;
-      param.aimed_stretch = 0;  // it has been squeezed before
-    } else if (!task_.joined.empty()) {
-      param.joined = task_.joined;
-      param.patch = task_.little;
-    } else if (!input_.frames.empty()) {
-      param.start.frames = [this](std::size_t i) {
+      options.aimed_stretch = 0;  // it has been squeezed before
+      return param::resume_flattening(mesh, start_uvs_, options, workspace);
+    }
+    if (!task_.joined.empty())
+      return param::join_flat_parts(mesh, {task_.joined, task_.little}, options, workspace);
+    if (!input_.frames.empty())
+      options.start.frames = [this](std::size_t i) {
         return input_.frames.at(input_.topology, chart_.triangles()[i]);
       };
-    }
-    return param;
+    return param::flatten_disc(mesh, options, workspace);
   }
 
   // Lays a chart that unrolls flat, without calling the solver. Returns false if it does not
@@ -338,7 +343,7 @@ class ChartJob {
     if (!unroll()) {
       const LocalMesh mesh = chart_.mesh();
       result_ = {};  // large, and no longer needed
-      result_ = parameterize(mesh, param_options(mesh), scratch_.workspace);
+      result_ = solve(mesh);
     }
     const bool single = chart_.triangles().size() == 1;
     if (!single && !(result_.injective && result_.within_bound)) return false;

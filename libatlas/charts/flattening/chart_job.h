@@ -39,7 +39,7 @@ struct ChartTask {
   int rings = 1;
   int cuts = 3;      // rounds of cutting the chart open before it is divided
   int closings = 1;  // how many of these may close cuts whose banks cross
-  // Three per triangle, or empty: uvs of the flat parts to be joined (see ParamOptions::joined).
+  // Three per triangle, or empty: uvs of the flat parts to be joined (param::FlatParts).
   std::span<const Vec2d> joined = {};
   // Three per triangle, or empty: the uvs of an earlier attempt within the bound; unplaced()
   // (newcomers.h) for triangles that the chart has got since.

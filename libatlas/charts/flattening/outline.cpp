@@ -5,29 +5,26 @@
 
 #include "libatlas/charts/geometry/hull.h"
 #include "libatlas/charts/mesh/chart_fans.h"
+#include "libatlas/core/bounds.h"
+#include "libatlas/core/glm_bridge.h"
 
 namespace atlas {
 namespace {
 
-struct Box {
-  double left = 1, right = -1, low = 1, high = -1;
+using Box = Bounds<glm::dvec2>;
 
-  static Box of(const Outline::Edge& e) {
-    return {std::min(e.from.x, e.to.x), std::max(e.from.x, e.to.x), std::min(e.from.y, e.to.y),
-            std::max(e.from.y, e.to.y)};
-  }
-  bool meets(const Box& other) const {
-    return left <= other.right && other.left <= right && low <= other.high && other.low <= high;
-  }
-};
+Box box_of(const Outline::Edge& edge) {
+  Box box;
+  box.add(to_glm(edge.from));
+  box.add(to_glm(edge.to));
+  return box;
+}
 
 Box box_around(std::span<const Outline::Edge> edges) {
-  if (edges.empty()) return {};
-  Box all = Box::of(edges[0]);
+  Box all;
   for (const Outline::Edge& edge : edges) {
-    const Box box = Box::of(edge);
-    all = {std::min(all.left, box.left), std::max(all.right, box.right), std::min(all.low, box.low),
-           std::max(all.high, box.high)};
+    all.add(to_glm(edge.from));
+    all.add(to_glm(edge.to));
   }
   return all;
 }
@@ -41,7 +38,7 @@ struct Swept {
 void add_near(std::span<const Outline::Edge> edges, const Box& near, int side,
               std::vector<Swept>& out) {
   for (const Outline::Edge& edge : edges) {
-    const Box box = Box::of(edge);
+    const Box box = box_of(edge);
     if (box.meets(near)) out.push_back({box, &edge, side});
   }
 }
@@ -73,12 +70,12 @@ std::size_t count_crossings(std::span<const Outline::Edge> a, std::span<const Ou
   add_near(a, box_around(b), 0, edges);
   add_near(b, box_around(a), 1, edges);
   std::sort(edges.begin(), edges.end(),
-            [](const Swept& s, const Swept& t) { return s.box.left < t.box.left; });
+            [](const Swept& s, const Swept& t) { return s.box.low.x < t.box.low.x; });
   std::array<std::vector<const Swept*>, 2> open;  // those that may reach further to the right
   std::size_t count = 0;
   for (const Swept& edge : edges) {
     auto& others = open[1 - edge.side];
-    std::erase_if(others, [&](const Swept* other) { return other->box.right < edge.box.left; });
+    std::erase_if(others, [&](const Swept* other) { return other->box.high.x < edge.box.low.x; });
     for (const Swept* other : others) {
       const Outline::Edge &e = *edge.edge, &f = *other->edge;
       if (edge.box.meets(other->box) && cross_each_other(e.from, e.to, f.from, f.to) &&

@@ -5,9 +5,9 @@
 #include <utility>
 #include <vector>
 
+#include "libatlas/param/flatten_disc.h"
 #include "libatlas/param/halfedges.h"
 #include "libatlas/param/orient.h"
-#include "libatlas/param/parameterize.h"
 
 namespace atlas {
 namespace {
@@ -15,12 +15,10 @@ namespace {
 // Relaxes a piece beyond the bound. What was a small part of a chart may be a large part of the
 // piece.
 void relax(const LocalMesh& mesh, double max_stretch, FlatChart& piece) {
-  ParamOptions options;
+  param::FlattenOptions options;
   options.max_stretch = max_stretch;
-  options.start.uvs = piece.uvs;
-  options.resume = true;
   ParamWorkspace workspace;
-  ParamResult relaxed = parameterize(mesh, options, workspace);
+  ParamResult relaxed = param::resume_flattening(mesh, piece.uvs, options, workspace);
   if (!relaxed.injective || !relaxed.within_bound) return;
   piece.uvs = std::move(relaxed.uvs);
   piece.distortion = relaxed.distortion;
@@ -88,7 +86,7 @@ std::vector<std::vector<std::uint32_t>> connected_parts(const FlatChart& whole,
     for (std::size_t k = 0; k < part.size(); ++k) {
       for (std::uint32_t h = 3 * part[k]; h < 3 * part[k] + 3; ++h) {
         const std::uint32_t o = half_edges.opposite(h);
-        if (o != param::HalfEdges::none && !std::exchange(seen[o / 3], 1)) part.push_back(o / 3);
+        if (o != kNoIndex && !std::exchange(seen[o / 3], 1)) part.push_back(o / 3);
       }
     }
     std::sort(part.begin(), part.end());

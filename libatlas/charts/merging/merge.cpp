@@ -228,29 +228,9 @@ class Merger {
 
   TrialOutcome attempt(std::uint32_t a, std::uint32_t b) {
     ++trials;
-    double length = 0;
-    for (const std::uint32_t arc : glue_)
-      length += mesh_.arcs[arc].length - kHiddenSeam * mesh_.arcs[arc].crease;
+    const TrialLimits limits = limits_for(a, b);
     const CoarseChart &p = chart(a), &q = chart(b);
     const double area = p.area + q.area;
-    if (relaxed_) length += options_.chart_worth * std::sqrt(piece_area_);
-    // The merger may cost as much stretch as the seam that it saves is worth.
-    const double worth = options_.seam_worth * length * std::sqrt(piece_area_);
-    TrialLimits limits = options_.limits;
-    limits.stretch_l2 =
-        std::min(limits.stretch_l2, std::sqrt(1 + (p.energy + q.energy + worth) / area));
-    limits.high_area =
-        p.high_area + q.high_area + options_.tail_worth * length * std::sqrt(piece_area_);
-    if (relaxed_) {
-      limits.solidity = options_.small_solidity;
-      limits.fill = options_.small_fill;
-    }
-    if (options_.cone > 0) limits.solidity = limits.fill = kConeFill;
-    limits.unrolls = p.unrolls && q.unrolls;
-    for (CoarseChart* half : {&chart(a), &chart(b)}) {
-      if (half->box == 0) half->box = trial_.box(half->cells);
-      limits.box += half->box;
-    }
     const double spare = area * (limits.stretch_l2 * limits.stretch_l2 - 1) - p.energy - q.energy;
     const double spare_area = limits.high_area - p.high_area - q.high_area;
     if (refused(a, b, spare, spare_area) || refused(b, a, spare, spare_area)) {
@@ -268,6 +248,33 @@ class Merger {
                                    outcome.entangled, glue_});
     }
     return outcome;
+  }
+
+  // Returns what the two charts may be as one that is joined along glue_. The merger may cost as
+  // much stretch as the seam that it saves is worth.
+  TrialLimits limits_for(std::uint32_t a, std::uint32_t b) {
+    double length = 0;
+    for (const std::uint32_t arc : glue_)
+      length += mesh_.arcs[arc].length - kHiddenSeam * mesh_.arcs[arc].crease;
+    if (relaxed_) length += options_.chart_worth * std::sqrt(piece_area_);
+    const CoarseChart &p = chart(a), &q = chart(b);
+    const double worth = options_.seam_worth * length * std::sqrt(piece_area_);
+    const double stretch = std::sqrt(1 + (p.energy + q.energy + worth) / (p.area + q.area));
+    TrialLimits limits = options_.limits;
+    limits.stretch_l2 = std::min(limits.stretch_l2, stretch);
+    limits.high_area =
+        p.high_area + q.high_area + options_.tail_worth * length * std::sqrt(piece_area_);
+    if (relaxed_) {
+      limits.solidity = options_.small_solidity;
+      limits.fill = options_.small_fill;
+    }
+    if (options_.cone > 0) limits.solidity = limits.fill = kConeFill;
+    limits.unrolls = p.unrolls && q.unrolls;
+    for (CoarseChart* half : {&chart(a), &chart(b)}) {
+      if (half->box == 0) half->box = trial_.box(half->cells);
+      limits.box += half->box;
+    }
+    return limits;
   }
 
   // Whether an earlier trial of parts of the two charts shows that joining them would fail, or cost

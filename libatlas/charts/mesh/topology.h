@@ -10,19 +10,18 @@
 
 #include "libatlas/charts/charts.h"
 #include "libatlas/core/context.h"
+#include "libatlas/core/half_edge.h"
 #include "libatlas/core/status.h"
 #include "libatlas/core/vec.h"
 
 namespace atlas {
-
-inline constexpr std::uint32_t kNoIndex = 0xffffffffu;
 
 struct TopologyDefects {
   std::uint64_t degenerate_triangles = 0, duplicate_triangles = 0, nonmanifold_edges = 0,
                 nonmanifold_vertices = 0, misoriented_edges = 0;
 };
 
-// Half-edge h = 3 t + c runs from corner c of triangle t to corner (c + 1) % 3.
+// Half-edges are numbered as in core/half_edge.h.
 struct Topology {
   enum Flag : std::uint8_t {
     kDegenerate = 1,  // without area: linked to nothing
@@ -61,13 +60,6 @@ struct Topology {
     return (flags[t] & kFlipped) && c ? 3 * t + 3 - c : h;
   }
 };
-
-inline std::uint32_t next_half_edge(std::uint32_t h) {
-  return h % 3 == 2 ? h - 2 : h + 1;
-}
-inline std::uint32_t previous_half_edge(std::uint32_t h) {
-  return h % 3 == 0 ? h + 2 : h - 1;
-}
 
 // In scaled units.
 inline double edge_length(const Topology& topology, std::uint32_t half_edge) {

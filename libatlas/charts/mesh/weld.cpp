@@ -2,8 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
+#include "libatlas/core/bounds.h"
 #include "libatlas/core/drop_rounding.h"
 #include "libatlas/core/first_index.h"
 #include "libatlas/core/glm_bridge.h"
@@ -12,14 +12,11 @@ namespace atlas {
 namespace {
 
 double unit_scale(std::span<const Vec3f> positions, std::span<const std::uint8_t> used) {
-  glm::vec3 low(std::numeric_limits<float>::max()), high(-low);
+  Bounds<glm::vec3> box;
   for (std::size_t v = 0; v < used.size(); ++v) {
-    if (!used[v]) continue;
-    const glm::vec3 p = to_glm(positions[v]);
-    low = glm::min(low, p);
-    high = glm::max(high, p);
+    if (used[v]) box.add(to_glm(positions[v]));
   }
-  const glm::dvec3 extent = glm::dvec3(high) - glm::dvec3(low);
+  const glm::dvec3 extent = glm::dvec3(box.high) - glm::dvec3(box.low);
   const double size = std::max({extent.x, extent.y, extent.z});
   return size > 0 ? std::ldexp(1.0, -std::ilogb(size)) : 1.0;
 }
@@ -45,7 +42,7 @@ WeldedVertices weld_vertices(std::span<const Vec3f> positions, std::span<const s
     const Vec3f p{drop_rounding(at.x, size), drop_rounding(at.y, size), drop_rounding(at.z, size)};
     std::uint32_t& point = first.find(hash_words<3>({word_of(p.x), word_of(p.y), word_of(p.z)}),
                                       [&](std::uint32_t i) { return welded.points[i] == p; });
-    if (point == FirstIndex::kNone) {
+    if (point == kNoIndex) {
       point = static_cast<std::uint32_t>(welded.source.size());
       welded.source.push_back(v);
       welded.points.push_back(p);

@@ -4,9 +4,9 @@
 
 #include <vector>
 
+#include "libatlas/charts/charted_mesh.h"
 #include "libatlas/charts/charts.h"
 #include "libatlas/core/context.h"
-#include "libatlas/pipeline/assemble_world.h"
 #include "libatlas/scene/scene.h"
 
 namespace atlas {

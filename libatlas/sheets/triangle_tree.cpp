@@ -1,7 +1,4 @@
-#include "libatlas/pipeline/triangle_tree.h"
-
-#include <glm/common.hpp>
-#include <limits>
+#include "libatlas/sheets/triangle_tree.h"
 
 #include "libatlas/core/glm_bridge.h"
 
@@ -19,14 +16,6 @@ std::uint64_t spread(std::uint64_t x) {
   return (x | x << 2) & 0x1249249249249249u;
 }
 
-struct Bounds {
-  glm::vec3 low{std::numeric_limits<float>::max()}, high{-std::numeric_limits<float>::max()};
-  void add(const glm::vec3& p) {
-    low = glm::min(low, p);
-    high = glm::max(high, p);
-  }
-};
-
 }  // namespace
 
 TriangleTree::TriangleTree(std::span<const Vec3f> positions, std::span<const std::uint32_t> indices,
@@ -35,7 +24,7 @@ TriangleTree::TriangleTree(std::span<const Vec3f> positions, std::span<const std
   const auto corner = [&](std::uint32_t t, int k) {
     return to_glm(positions[indices[3 * std::size_t(t) + std::size_t(k)]]);
   };
-  Bounds all;
+  Box all;
   for (const std::uint32_t t : triangles_)
     for (int k = 0; k < 3; ++k) all.add(corner(t, k));
   const glm::dvec3 low(all.low), size = glm::dvec3(all.high) - low;
@@ -58,14 +47,13 @@ TriangleTree::TriangleTree(std::span<const Vec3f> positions, std::span<const std
   while (count > 0 && (levels_.empty() || count > 1)) {
     std::vector<Box> boxes;
     for (std::size_t begin = 0; begin < count; begin += kChildren) {
-      Bounds bounds;
+      Box& box = boxes.emplace_back();
       for (std::size_t i = begin; i < std::min(begin + kChildren, count); ++i) {
-        for (int k = 0; levels_.empty() && k < 3; ++k) bounds.add(corner(triangles_[i], k));
+        for (int k = 0; levels_.empty() && k < 3; ++k) box.add(corner(triangles_[i], k));
         if (levels_.empty()) continue;
-        bounds.add(to_glm(levels_.back()[i].low));
-        bounds.add(to_glm(levels_.back()[i].high));
+        box.add(levels_.back()[i].low);
+        box.add(levels_.back()[i].high);
       }
-      boxes.push_back({from_glm(bounds.low), from_glm(bounds.high)});
     }
     count = boxes.size();
     levels_.push_back(std::move(boxes));

@@ -1,18 +1,18 @@
-#include "libatlas/pipeline/one_sided.h"
+#include "libatlas/sheets/one_sided.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <glm/trigonometric.hpp>
-#include <glm/vector_relational.hpp>
-#include <limits>
 #include <numeric>
 #include <utility>
 
+#include "libatlas/charts/chart_triangles.h"
+#include "libatlas/core/bounds.h"
 #include "libatlas/core/counting_sort.h"
 #include "libatlas/core/glm_bridge.h"
 #include "libatlas/core/parallel.h"
-#include "libatlas/pipeline/triangle_tree.h"
+#include "libatlas/sheets/triangle_tree.h"
 
 namespace atlas {
 namespace {
@@ -65,24 +65,12 @@ struct Corners {
   }
 };
 
-struct Box {
-  glm::dvec3 low{std::numeric_limits<double>::max()}, high{-std::numeric_limits<double>::max()};
-
-  void add(const Vec3f& p) {
-    low = glm::min(low, to_dvec(p));
-    high = glm::max(high, to_dvec(p));
-  }
-  // Returns whether the boxes are within `reach` of each other along all axes.
-  bool meets(const Box& other, double reach) const {
-    return glm::all(glm::lessThanEqual(low, other.high + reach)) &&
-           glm::all(glm::lessThanEqual(other.low, high + reach));
-  }
-};
+using Box = Bounds<glm::dvec3>;
 
 double size_of(std::span<const Vec3f> positions) {
   Box box;
-  for (const Vec3f& p : positions) box.add(p);
-  return positions.empty() ? 0 : glm::distance(box.low, box.high);
+  for (const Vec3f& p : positions) box.add(to_dvec(p));
+  return positions.empty() ? 0 : glm::length(box.size());
 }
 
 // Returns whether some normal of one chart may be opposite to one of the other. The cones of
@@ -109,7 +97,7 @@ class Candidates {
         boxes_(charts.charts.size()),
         partners_(charts.charts.size()) {
     for (std::size_t k = 0; k < indices.size(); ++k)
-      boxes_[charts.triangle_chart[k / 3]].add(positions[indices[k]]);
+      boxes_[charts.triangle_chart[k / 3]].add(to_dvec(positions[indices[k]]));
     all_ = !find_partners();
   }
 
@@ -238,7 +226,7 @@ class Transfer {
   // Sets those of the chart's written triangles (`triangles`) that belong to a layer.
   void chart(std::uint32_t chart, const WorldMesh& written,
              std::span<const std::uint32_t> triangles, std::vector<std::uint8_t>& to) const {
-    const std::span<const std::uint32_t> fine = fine_triangles(chart);
+    const std::span<const std::uint32_t> fine = triangles_of(charts_, charts_.charts[chart]);
     const auto in_layer = [&](std::uint32_t t) { return layers_[t] != 0; };
     if (std::none_of(fine.begin(), fine.end(), in_layer)) return;
     const TriangleTree tree(uvs_, charts_.triangle_uv, {fine.begin(), fine.end()});
@@ -247,11 +235,6 @@ class Transfer {
   }
 
  private:
-  std::span<const std::uint32_t> fine_triangles(std::uint32_t chart) const {
-    const Chart& c = charts_.charts[chart];
-    return std::span(charts_.chart_triangles).subspan(c.first_triangle, c.triangle_count);
-  }
-
   Corners corners(const std::uint32_t* uv) const {
     const auto at = [&](std::uint32_t i) {
       return glm::dvec3(charts_.uvs[i].x, charts_.uvs[i].y, 0);

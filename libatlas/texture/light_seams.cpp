@@ -1,4 +1,4 @@
-#include "libatlas/pipeline/light_seams.h"
+#include "libatlas/texture/light_seams.h"
 
 #include <algorithm>
 #include <cmath>

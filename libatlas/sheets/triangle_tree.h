@@ -4,9 +4,11 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <glm/vec3.hpp>
 #include <span>
 #include <vector>
 
+#include "libatlas/core/bounds.h"
 #include "libatlas/core/vec.h"
 
 namespace atlas {
@@ -31,9 +33,7 @@ class TriangleTree {
  private:
   static constexpr std::size_t kChildren = 4;
 
-  struct Box {
-    Vec3f low, high;
-  };
+  using Box = Bounds<glm::vec3>;
   struct Node {
     std::size_t level, index;
   };

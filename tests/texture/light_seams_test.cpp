@@ -1,0 +1,90 @@
+#include "libatlas/texture/light_seams.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdint>
+
+#include "tests/texture/lit_sheets.h"
+
+namespace atlas::test {
+namespace {
+
+TEST(LightSeams, AreTheCreasesWhereLightJumps) {
+  const Sheets sheets = corner(4, constant(0.8), constant(0.3));
+  const LightSeams seams = sheets.seams();
+  EXPECT_NEAR(seams.length, 1, 1e-6);
+  const Scene& scene = sheets.loaded().scene;
+  ASSERT_EQ(seams.edges.size(), scene.indices.size());
+  for (std::uint32_t h = 0; h < seams.edges.size(); ++h) {
+    const std::uint32_t next = h % 3 == 2 ? h - 2 : h + 1;
+    const Vec3f a = scene.positions[scene.indices[h]], b = scene.positions[scene.indices[next]];
+    const bool along = a.x == 1 && b.x == 1 && a.z == 0 && b.z == 0;
+    EXPECT_EQ(seams.edges[h] != 0, along) << h;
+  }
+}
+
+TEST(LightSeams, AreNotWhereLightContinuesOrTheJumpIsNotVisible) {
+  EXPECT_TRUE(corner(4, constant(0.5), constant(0.5)).seams().edges.empty());
+  EXPECT_TRUE(corner(4, constant(0.5), constant(0.48)).seams().edges.empty());
+  EXPECT_FALSE(corner(4, constant(0.5), constant(0.4)).seams().edges.empty());
+  // Above white both are white.
+  EXPECT_TRUE(corner(4, constant(5), constant(50)).seams().edges.empty());
+  // A floor that continues as a floor, with other light.
+  EXPECT_TRUE(Sheets()
+                  .add({0, 0, 0}, {1, 0, 0}, {0, 1, 0}, 4, constant(0.8))
+                  .add({1, 0, 0}, {1, 0, 0}, {0, 1, 0}, 4, constant(0.2))
+                  .seams()
+                  .edges.empty());
+}
+
+TEST(LightSeams, RunAlongAWholeCreaseOrNotAtAll) {
+  const LightAt half = [](Vec3f p) { return p.y > 0.45 ? 0.2 : 0.5; };
+  EXPECT_NEAR(corner(16, constant(0.5001), half).seams().length, 1, 1e-6);
+  const LightAt end = [](Vec3f p) { return p.y > 0.9 ? 0.2 : 0.5; };
+  EXPECT_EQ(corner(16, constant(0.5001), end).seams().length, 0);
+}
+
+TEST(LightSeams, LeaveFacesTogetherThatAreFewTexelsWide) {
+  const Sheets leg = Sheets()
+                         .add({0, 0, 0}, {0.02f, 0, 0}, {0, 1, 0}, 4, constant(0.8))
+                         .add({0.02f, 0, 0}, {0, 0, 0.02f}, {0, 1, 0}, 4, constant(0.3));
+  EXPECT_NEAR(leg.seams(0.005).length, 1, 1e-6);  // width: 2 area / seam = 8 texels
+  EXPECT_EQ(leg.seams(0.0101).length, 0);
+}
+
+// Floor, floor beyond and a wall between the two: the floors continue each other.
+TEST(LightSeams, OfThreeSheetsAtAnEdgeThoseThatContinueEachOtherStayTogether) {
+  const Sheets sheets = Sheets()
+                            .add({0, 0, 0}, {1, 0, 0}, {0, 1, 0}, 2, constant(0.8))
+                            .add({1, 0, 0}, {1, 0, 0}, {0, 1, 0}, 2, constant(0.8))
+                            .add({1, 0, 0}, {0, 0, 1}, {0, 1, 0}, 2, constant(0.2));
+  const LightSeams seams = sheets.seams();
+  EXPECT_NEAR(seams.length, 1, 1e-6);
+  for (std::uint32_t h = 0; h < 2 * 8 * 3; ++h) EXPECT_EQ(seams.edges[h], 0) << h;
+}
+
+// Light that is constant per facet jumps at all edges of a smooth surface.
+TEST(LightSeams, DoNotShatterSmoothSurfaces) {
+  Sheets tube;
+  constexpr int kSides = 32;
+  for (int i = 0; i < kSides; ++i) {
+    const auto at = [](int k) {
+      return Vec3f{float(std::cos(2 * M_PI * k / kSides)), float(std::sin(2 * M_PI * k / kSides)),
+                   0};
+    };
+    const Vec3f a = at(i), b = at((i + 1) % kSides);
+    tube.add(a, {b.x - a.x, b.y - a.y, 0}, {0, 0, 1}, 1, constant(i % 2 ? 0.8 : 0.2));
+  }
+  EXPECT_TRUE(tube.seams().edges.empty());
+}
+
+TEST(LightSeams, DoNotDependOnThePlaceOfTheScene) {
+  Sheets moved;
+  moved.add({-1, 7, 3}, {1, 0, 0}, {0, 1, 0}, 3, constant(0.8))
+      .add({0, 7, 3}, {0, 0, 1}, {0, 1, 0}, 3, constant(0.3));
+  EXPECT_EQ(moved.seams().edges, corner(3, constant(0.8), constant(0.3)).seams().edges);
+}
+
+}  // namespace
+}  // namespace atlas::test
