@@ -3,6 +3,8 @@
 #include <numbers>
 #include <optional>
 
+#include "libatlas/core/progress.h"
+#include "libatlas/pack/fit_free_page.h"
 #include "libatlas/pack/fit_pages.h"
 #include "libatlas/pack/fit_result.h"
 #include "libatlas/pack/outline_fit.h"
@@ -208,10 +210,9 @@ bool worth_pressing_late(double fill, const FitSearchOptions& options) {
   return fill < kPoorFill && kMostPressed * fill >= options.wanted_fill;
 }
 
-}  // namespace
-
-Result<FitResult> fit_outlines(const FitCharts& charts, const FitSearchOptions& options,
-                               const Context& context) {
+// Presses the charts if they are few, else searches for the largest scale at which they fit.
+Result<FitResult> search_outlines(const FitCharts& charts, const FitSearchOptions& options,
+                                  const Context& context) {
   const auto [items, outlines] = charts;
   FitResult result;
   const bool specks = has_specks(outlines, options);
@@ -253,6 +254,27 @@ Result<FitResult> fit_outlines(const FitCharts& charts, const FitSearchOptions& 
   if (context.cancelled()) return Status::cancelled();
   if (denser) return std::move(*denser);
   return result;
+}
+
+}  // namespace
+
+Result<FitResult> fit_outlines(const FitCharts& charts, const FitSearchOptions& options,
+                               const Context& context) {
+  const std::size_t n = charts.items.size();
+  if (!options.free_aspect || options.pages > 1 || n < kSomeOnFreePage)
+    return search_outlines(charts, options, context);
+  constexpr double kQuick = 0.3;  // share of the progress
+  std::optional<FitResult> quick =
+      fit_free_page(charts, options, part_of_stage(context, "packing", 0, kQuick));
+  if (context.cancelled()) return Status::cancelled();
+  if (quick && n >= kManyOnFreePage && !has_specks(charts.outlines, options))
+    return std::move(*quick);
+  Result<FitResult> searched =
+      search_outlines(charts, options, part_of_stage(context, "packing", kQuick, 1));
+  if (!quick || context.cancelled()) return searched;
+  if (!searched.ok() || quick->utilization > searched->utilization) return std::move(*quick);
+  searched->layouts += quick->layouts;
+  return searched;
 }
 
 }  // namespace atlas::pack

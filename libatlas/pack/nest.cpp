@@ -72,22 +72,26 @@ Piece make_piece(const ChartOutline& shape, double factor, const PieceOptions& o
     }
   }
   piece.masks = std::move(masks);
+  complete(piece);
+  return piece;
+}
+
+}  // namespace
+
+void complete(Piece& piece) {
   for (const Mask& m : piece.masks) {
     piece.tests.push_back(test_order(m));
     piece.centers.push_back(center_height(m));
     piece.lifts.push_back(0.5 * m.height + 0.5 * piece.centers.back());
   }
-  piece.by_fraction.resize(n);
+  piece.by_fraction.resize(piece.masks.size());
   std::iota(piece.by_fraction.begin(), piece.by_fraction.end(), 0u);
   const auto fraction = [&](std::uint32_t k) {
     return piece.lifts[k] - std::floor(piece.lifts[k]);
   };
   std::stable_sort(piece.by_fraction.begin(), piece.by_fraction.end(),
                    [&](std::uint32_t a, std::uint32_t b) { return fraction(a) < fraction(b); });
-  return piece;
 }
-
-}  // namespace
 
 std::vector<Piece> make_pieces(std::span<const ChartOutline> shapes, const PieceOptions& options,
                                const Context& context) {
@@ -329,8 +333,10 @@ class Placer {
 
 void place_pieces(std::span<const Piece> pieces, const NestPlan& plan, BitPage& page, Nest& nest) {
   Placer placer(pieces, plan, page, nest);
-  for (const std::uint32_t id : plan.order)
+  for (const std::uint32_t id : plan.order) {
+    if (plan.cancel && plan.cancel->load(std::memory_order_relaxed)) break;
     if (placer.find(id) && !placer.put(id)) break;
+  }
   nest.used_height = page.used_height();
 }
 

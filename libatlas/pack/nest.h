@@ -1,6 +1,7 @@
 // Internal: places outlines on one page, and searches for a good order of placing them.
 #pragma once
 
+#include <atomic>
 #include <cstdint>
 #include <limits>
 #include <memory>
@@ -43,6 +44,9 @@ struct PieceOptions {
   Extent page;
 };
 
+// Sets what follows from the masks: tests, centers, lifts and by_fraction.
+void complete(Piece& piece);
+
 // Rasterises the shapes in all directions. Quarter turns are made by turning masks, which is exact.
 // Without the page as a limit, the memory that masks take grows with the length of the shapes.
 std::vector<Piece> make_pieces(std::span<const ChartOutline> shapes, const PieceOptions& options,
@@ -57,6 +61,8 @@ struct NestPlan {
   // Placing ends with the first piece that makes the page higher than this. That piece is left
   // over.
   double most_height = std::numeric_limits<double>::infinity();
+  // Once it is raised, place_pieces() places no more. The other pieces are not left over either.
+  const std::atomic<bool>* cancel = nullptr;
 };
 
 // Sorts by size, largest first. The size is the number of cells, or a weighted geometric mean of

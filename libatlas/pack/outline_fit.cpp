@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "libatlas/core/parallel.h"
+#include "libatlas/pack/fit_factors.h"
 #include "libatlas/pack/fit_pages.h"
 
 namespace atlas::pack {
@@ -28,6 +29,17 @@ double mean_side(std::span<const ChartOutline> outlines, const FitOptions& optio
 }
 
 }  // namespace
+
+std::vector<double> chart_factors(std::span<const FitItem> items, const FitOptions& options,
+                                  double scale) {
+  std::vector<double> factors(items.size());
+  for (std::size_t i = 0; i < items.size(); ++i) {
+    const double side = std::max(items[i].width, items[i].height);
+    const double least = std::min<double>(options.minimum_side, std::ceil(side));
+    factors[i] = side > 0 ? std::max(scale, std::min(options.max_scale, least / side)) : scale;
+  }
+  return factors;
+}
 
 OutlineFit::OutlineFit(std::span<const FitItem> items, std::span<const ChartOutline> outlines,
                        const FitOptions& options, const Context& context)
@@ -88,13 +100,7 @@ void OutlineFit::shrink_page(std::uint32_t page, OutlineLayout& layout) const {
 }
 
 void OutlineFit::prepare(double scale, OutlineLayout& layout) const {
-  layout.factors.resize(items_.size());
-  for (std::size_t i = 0; i < items_.size(); ++i) {
-    const double side = std::max(items_[i].width, items_[i].height);
-    const double least = std::min<double>(options_.minimum_side, std::ceil(side));
-    layout.factors[i] =
-        side > 0 ? std::max(scale, std::min(options_.max_scale, least / side)) : scale;
-  }
+  layout.factors = chart_factors(items_, options_, scale);
   PieceOptions piece_options;
   piece_options.factors = layout.factors;
   piece_options.padding = options_.padding;
@@ -197,7 +203,9 @@ NestSearchResult OutlineFit::fill_group(std::span<const Piece> pieces,
   NestPlan plan;
   plan.order = orders[p];
   plan.direction.assign(pieces.size(), kFree);
+  plan.cancel = context_.cancel;
   place_pieces(pieces, plan, page, filled.nest);
+  if (context_.cancelled()) return filled;
   if (filled.nest.left_over.empty() || options_.preset == PackPreset::fast) return filled;
   if (plan.order.size() < 2) return filled;  // one chart has been tried in every direction
   // A search over orders is only worthwhile if it can try more than a few.

@@ -248,6 +248,16 @@ bool overlap(const Mask& a, const Mask& b, std::int32_t dx, std::int32_t dy) {
   return false;
 }
 
+Mask join(const Mask& a, const Mask& b, std::int32_t dx, std::int32_t dy) {
+  RunSet set;
+  set.items.reserve(a.runs.size() + b.runs.size());
+  for (std::int32_t r = 0; r < a.height; ++r)
+    for (const Run& run : a.row(r)) set.items.push_back({r, run});
+  for (std::int32_t r = 0; r < b.height; ++r)
+    for (const Run& run : b.row(r)) set.items.push_back({r + dy, {run.begin + dx, run.end + dx}});
+  return set.build();
+}
+
 Mask coarsen(const Mask& mask, std::int32_t factor) {
   RunSet set;
   for (std::int32_t r = 0; r < mask.height; ++r)

@@ -52,6 +52,9 @@ Mask half_turn(const Mask& mask);
 // and dy cells above it.
 bool overlap(const Mask& a, const Mask& b, std::int32_t dx, std::int32_t dy);
 
+// Returns the cells of both if b is put dx cells to the right of a and dy cells above it.
+Mask join(const Mask& a, const Mask& b, std::int32_t dx, std::int32_t dy);
+
 // Returns the mask on cells that are `factor` times as large: every large cell that contains a cell
 // of the mask.
 Mask coarsen(const Mask& mask, std::int32_t factor);
