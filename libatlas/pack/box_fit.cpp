@@ -10,6 +10,9 @@
 namespace atlas::pack {
 namespace {
 
+// This many boxes are packed jointly on several pages, without an attempt by groups.
+constexpr std::size_t kVeryMany = 4000;
+
 std::int32_t content_side(double extent, double scale, std::int32_t minimum) {
   const double least = std::min<double>(minimum, std::ceil(extent));
   // The small slack prevents that rounding error turns 100 texels at scale 0.5 into 51.
@@ -74,6 +77,7 @@ bool BoxFit::pack_at(double scale, std::uint32_t pages, BoxLayout& layout) {
     if (!box_fits_page(b)) return false;
   if (!group(pages, layout)) return false;
   if (pages == 1 && boxes_.size() >= kManyItems) return pack_many(layout);
+  if (boxes_.size() >= kVeryMany) return pack_by_gaps(pages, layout);
   return pack_grouped(pages, layout) || pack_jointly(pages, layout) || pack_searched(pages, layout);
 }
 
@@ -135,6 +139,14 @@ bool BoxFit::place(std::uint32_t item, std::uint32_t page, FreeRects& free,
   free.place(spot.rect);
   layout.placements[item] = {page, spot.rect.x, spot.rect.y, spot.rotated};
   return true;
+}
+
+// Packs all pages at once, gap after gap. With thousands of items this is as dense as anything
+// else, and each page's list of free rectangles would take most of a second to keep.
+bool BoxFit::pack_by_gaps(std::uint32_t pages, BoxLayout& layout) {
+  const Problem problem = problem_of(boxes_, page_, pages);
+  return keep(pack_gaps(problem, sorted_items(boxes_, Order::area)), layout) ||
+         keep(pack_gaps(problem, sorted_items(boxes_, Order::height)), layout);
 }
 
 // Packs all pages at once by first fit. If the pages are nearly full, this is denser than groups,

@@ -123,7 +123,8 @@ struct FitResult {
 
 // Finds the largest common scale <= max_scale at which every item fits. At each scale it groups the
 // box areas by F(A) = N, packs each group into its page (largest items first), and moves the items
-// that did not fit into any page that still has room. If that fails, it packs all pages jointly.
+// that did not fit into any page that still has room. If that fails, it packs all pages jointly;
+// 4000 boxes or more are packed jointly at once.
 // The scale is found by bisection between an area bound and the best scale that was seen to fit.
 // Whether a scale fits is not monotone, so the result is the largest scale that was *seen* to fit.
 // If the minimum sides alone exceed all pages, the items are refused without a packing. If

@@ -201,6 +201,20 @@ TEST(FitPages, ManyItemsFillOnePage) {
 }
 
 // Pages are cropped to their charts even where pressing is not tried.
+TEST(FitPages, ManyItemsFillSeveralPages) {
+  std::vector<FitItem> items{{900, 500}};
+  test::Noise noise{12};
+  for (int i = 0; i < 5000; ++i)
+    items.push_back({4 + 26.0 * noise.unit(), 4 + 26.0 * noise.unit()});
+  FitOptions o = tight(512);
+  o.pages = 3;
+  const FitResult r = valid_fit(items, o);
+  EXPECT_EQ(r.pages.size(), 3u);
+  EXPECT_LT(r.scale, 0.57) << "the largest box is as wide as the page";
+  EXPECT_GT(r.box_utilization, 0.96);
+  EXPECT_EQ(r.grouping.group.size(), items.size());
+}
+
 TEST(FitPages, FreePagesAreCropped) {
   const test::ChartItems charts({{{0, 0}, {400, 0}, {400, 20}}, {{0, 0}, {400, 20}, {0, 20}}});
   FitOptions o = tight(256);
