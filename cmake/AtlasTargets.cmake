@@ -15,7 +15,9 @@ target_compile_options(atlas_options INTERFACE -Wall -Wextra -Wshadow -ffp-contr
 # those of a program that uses the same package. Where the two were compiled with other flags they
 # differ: Eigen, for one, allocates and frees memory in another way with AVX than without, and a program
 # that mixes both ways crashes. So these packages are compiled into namespaces of the library's own.
-# tests/package/check_symbols.cmake holds the libraries to this.
+# tests/package/check_symbols.cmake holds the libraries to this. Packages whose compiled libraries are
+# linked (OpenMesh, fmt, oneTBB, Draco) cannot be renamed, and neither can Boost, whose macros form the
+# names of headers.
 target_compile_definitions(atlas_options INTERFACE
   Eigen=atlas_eigen CGAL=atlas_cgal nlohmann=atlas_nlohmann)
 # GCC 12 sees overflows and uninitialised reads in fmt's and the standard library's own headers once it
