@@ -39,11 +39,6 @@ function(atlas_gather target output)
   target_compile_features(${target} PUBLIC cxx_std_20)
   set_target_properties(${target} PROPERTIES OUTPUT_NAME ${output} LINKER_LANGUAGE CXX
                         VERSION ${PROJECT_VERSION} SOVERSION ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR})
-  # The image module lies beside the library; a program that holds the library itself looks there.
-  if(NOT BUILD_SHARED_LIBS)
-    target_link_options(${target} INTERFACE
-      "$<INSTALL_INTERFACE:LINKER:-rpath,$<INSTALL_PREFIX>/${CMAKE_INSTALL_LIBDIR}>")
-  endif()
   install(TARGETS ${target} EXPORT libatlasTargets COMPONENT development
           LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR} ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
 endfunction()
@@ -89,10 +84,17 @@ function(atlas_install_package)
   if(BUILD_SHARED_LIBS)
     set(LIBATLAS_IS_STATIC OFF)
   endif()
+  # The image module lies beside the library; a program that holds the library itself looks there. The
+  # loader looks in the system's folders anyway, and distributions refuse run paths to them, so
+  # libatlasConfig.cmake and the pkg-config file leave them out there.
+  set(LIBATLAS_HAS_RUNPATH OFF)
+  if(LIBATLAS_RUNPATH AND NOT BUILD_SHARED_LIBS AND NOT CMAKE_SKIP_RPATH AND NOT CMAKE_SKIP_INSTALL_RPATH)
+    set(LIBATLAS_HAS_RUNPATH ON)
+  endif()
   install(EXPORT libatlasTargets NAMESPACE libatlas:: DESTINATION ${package_dir} COMPONENT development)
   configure_package_config_file(${PROJECT_SOURCE_DIR}/cmake/libatlasConfig.cmake.in
                                 ${PROJECT_BINARY_DIR}/libatlasConfig.cmake
-                                INSTALL_DESTINATION ${package_dir})
+                                INSTALL_DESTINATION ${package_dir} PATH_VARS CMAKE_INSTALL_LIBDIR)
   write_basic_package_version_file(${PROJECT_BINARY_DIR}/libatlasConfigVersion.cmake
                                    COMPATIBILITY SameMinorVersion)
   install(FILES ${PROJECT_BINARY_DIR}/libatlasConfig.cmake
@@ -111,9 +113,13 @@ function(atlas_install_package)
     set(PC_PUBLIC "")
   else()
     set(PC_PRIVATE "Requires: ${needed_packages}")
-    set(PC_PUBLIC " ${needed_libraries} -Wl,-rpath,\${libdir}")
+    set(PC_PUBLIC " ${needed_libraries}")
+    if(LIBATLAS_HAS_RUNPATH AND NOT CMAKE_INSTALL_FULL_LIBDIR IN_LIST CMAKE_CXX_IMPLICIT_LINK_DIRECTORIES)
+      string(APPEND PC_PUBLIC " -Wl,-rpath,\${libdir}")
+    endif()
   endif()
   file(RELATIVE_PATH PC_UP /prefix/${CMAKE_INSTALL_LIBDIR}/pkgconfig /prefix)
+  string(REGEX REPLACE "/$" "" PC_UP ${PC_UP})
   configure_file(${PROJECT_SOURCE_DIR}/cmake/libatlas.pc.in ${PROJECT_BINARY_DIR}/libatlas.pc @ONLY)
   install(FILES ${PROJECT_BINARY_DIR}/libatlas.pc
           DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig COMPONENT development)

@@ -11,6 +11,15 @@ target_include_directories(atlas_options INTERFACE ${PROJECT_SOURCE_DIR})
 # the same on every machine, so it is off.
 target_compile_options(atlas_options INTERFACE -Wall -Wextra -Wshadow -ffp-contract=off
                                                $<$<BOOL:${LIBATLAS_WERROR}>:-Werror>)
+# Templates of header-only packages leave weak symbols in the library, which the linker merges with
+# those of a program that uses the same package. Where the two were compiled with other flags they
+# differ: Eigen, for one, allocates and frees memory in another way with AVX than without, and a program
+# that mixes both ways crashes. So these packages are compiled into namespaces of the library's own.
+# tests/package/check_symbols.cmake holds the libraries to this. Packages whose compiled libraries are
+# linked (OpenMesh, fmt, oneTBB, Draco) cannot be renamed, and neither can Boost, whose macros form the
+# names of headers.
+target_compile_definitions(atlas_options INTERFACE
+  Eigen=atlas_eigen CGAL=atlas_cgal nlohmann=atlas_nlohmann)
 # GCC 12 sees overflows and uninitialised reads in fmt's and the standard library's own headers once it
 # has inlined them at -O3: these stay warnings.
 if(LIBATLAS_WERROR AND CMAKE_CXX_COMPILER_ID STREQUAL "GNU")

@@ -15,6 +15,7 @@
 #include "libatlas/core/counted.h"
 #include "libatlas/core/file_extension.h"
 #include "libatlas/pack/fit.h"
+#include "libatlas/scene/obj_names.h"
 #include "libatlas/scene/reader.h"
 
 namespace atlas::app {
@@ -208,6 +209,7 @@ Result<PackedAtlas> run_mesh(const PackCommand& c, const Context& context) {
   if (lower_extension(c.output) != ".obj")
     return Status(ErrorCode::bad_option,
                   fmt::format("{}: the target must end in .obj", c.output.string()));
+  if (Status s = check_obj_path(c.output); !s.ok()) return s;
   if (Status s = check_output(c.output, {c.input, c.preview}); !s.ok()) return s;
   if (Status s = check_output(material_file(c.output), {c.input, c.preview}); !s.ok()) return s;
   if (Status s = check_preview(c); !s.ok()) return s;

@@ -10,6 +10,7 @@
 #include <cstring>
 
 #include "libatlas/core/atomic_file.h"
+#include "libatlas/core/links.h"
 
 namespace atlas::app {
 namespace {
@@ -19,11 +20,13 @@ namespace fs = std::filesystem;
 bool same_file(const fs::path& a, const fs::path& b) {
   std::error_code error;
   if (fs::equivalent(a, b, error)) return true;
-  // Files that do not exist yet are the same if they have the same name in the same folder.
+  // Files that do not exist yet are the same if they have the same name in the same folder, or if
+  // links lead there.
   const auto folder = [](const fs::path& p) {
     return p.has_parent_path() ? p.parent_path() : fs::path(".");
   };
-  return a.filename() == b.filename() && fs::equivalent(folder(a), folder(b), error);
+  const fs::path x = end_of_links(a), y = end_of_links(b);
+  return x.filename() == y.filename() && fs::equivalent(folder(x), folder(y), error);
 }
 
 }  // namespace

@@ -17,7 +17,14 @@ std::atomic<bool> g_cancelled{false};  // the only variable that the signal hand
 extern "C" void on_interrupt(int) {
   // After a second signal, a third ctrl-C ends the program at once, in case a stage does not poll.
   // The second one does not, because timeout(1) sends each signal twice.
-  if (g_cancelled.exchange(true)) std::signal(SIGINT, SIG_DFL);
+  if (g_cancelled.exchange(true) && std::signal(SIGINT, SIG_DFL) == SIG_IGN)
+    std::signal(SIGINT, SIG_IGN);
+}
+
+// Signals that whoever started the program lets it ignore stay ignored: those of nohup(1), and of
+// shells that run it in the background.
+void take(int signal) {
+  if (std::signal(signal, on_interrupt) == SIG_IGN) std::signal(signal, SIG_IGN);
 }
 
 constexpr int kBarWidth = 28;
@@ -26,9 +33,7 @@ constexpr int kBarWidth = 28;
 
 Terminal::Terminal(std::string program, bool quiet)
     : program_(std::move(program)), quiet_(quiet), is_terminal_(::isatty(STDERR_FILENO) != 0) {
-  std::signal(SIGINT, on_interrupt);
-  std::signal(SIGTERM, on_interrupt);
-  if (std::signal(SIGHUP, on_interrupt) == SIG_IGN) std::signal(SIGHUP, SIG_IGN);  // nohup(1)
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) take(signal);
 }
 
 Terminal::~Terminal() {

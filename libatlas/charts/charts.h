@@ -84,7 +84,7 @@ struct ChartSet {
                                                 // indices (a triangle whose orientation disagrees
                                                 // with its chart's is listed in flipped_triangles)
   std::vector<std::uint32_t> flipped_triangles = {};  // input orientation opposite to the chart's
-  Distortion distortion = {};                         // of the whole
+  Distortion distortion = {};                         // means and sums; else of the worst chart
   double seam_length = 0;           // of interior edges that are chart borders, scene units
   double surface_area = 0;          // scene units squared
   std::uint64_t copied_pieces = 0;  // pieces of the mesh that took the charts of a congruent one

@@ -10,6 +10,7 @@
 #include <cstring>
 
 #include "libatlas/core/leftovers.h"
+#include "libatlas/core/links.h"
 #include "libatlas/core/write_error.h"
 
 namespace atlas {
@@ -36,15 +37,6 @@ fs::path name_beside(const fs::path& target, std::string_view kind) {
   return beside;
 }
 
-// Returns the path that a symbolic link leads to, or `path` itself if it is no link or leads
-// nowhere.
-fs::path behind_links(const fs::path& path) {
-  std::error_code error;
-  if (!fs::is_symlink(path, error)) return path;
-  const fs::path end = fs::canonical(path, error);
-  return error ? path : end;
-}
-
 // Returns whether this is something that a file cannot replace: a device, a pipe, a socket.
 bool is_special(const fs::path& path) {
   std::error_code error;
@@ -60,9 +52,11 @@ AtomicFiles::~AtomicFiles() {
 }
 
 fs::path AtomicFiles::path_for(const fs::path& name) {
-  const fs::path target = behind_links(name), folder = target.parent_path();
+  const fs::path target = end_of_links(name), folder = target.parent_path();
+  // Links without an end stay as they are, since opening them fails.
+  const bool in_place = is_special(target) || links_have_no_end(target);
   if (entries_.empty() || entries_.back().target.parent_path() != folder) remove_leftovers(folder);
-  const fs::path temporary = is_special(target) ? target : name_beside(target, "part");
+  const fs::path temporary = in_place ? target : name_beside(target, "part");
   entries_.push_back({temporary, target, name});
   return temporary;
 }
@@ -132,7 +126,13 @@ Status AtomicFiles::commit() {
 }
 
 Status check_writable(const fs::path& name) {
-  const fs::path target = behind_links(name);
+  if (links_have_no_end(name)) {
+    return {ErrorCode::io,
+            fmt::format("{}: cannot be written: its symbolic links lead to no file but back to "
+                        "themselves (remove them, or give another name)",
+                        name.string())};
+  }
+  const fs::path target = end_of_links(name);
   const fs::path directory = target.has_parent_path() ? target.parent_path() : fs::path(".");
   const auto refuse = [&](const std::string& why) {
     return Status(ErrorCode::io, fmt::format("{}: cannot be written: {} {}", name.string(),

@@ -25,9 +25,9 @@ class AtomicFiles {
 
   // Returns the temporary path to which `target` is to be written. It keeps the extension, since
   // some writers choose the format by it. Symbolic links are followed: the file that they lead to
-  // is replaced, not the links. If a file cannot replace the target (a device, a pipe), the target
-  // itself is returned and so written directly. Also removes the temporary files that killed
-  // processes have left in the target's folder.
+  // is replaced or created, and they stay. If a file cannot replace the target (a device, a pipe),
+  // the target itself is returned and so written directly. Also removes the temporary files that
+  // killed processes have left in the target's folder.
   std::filesystem::path path_for(const std::filesystem::path& target);
 
   // Writes `bytes` to the temporary file of `target`. Errors: io; the message names the target.
@@ -57,9 +57,9 @@ class AtomicFiles {
   std::vector<Entry> entries_;
 };
 
-// Checks that a file can be written at `target`: its directory exists and takes files, and its name
-// is not too long. To be called before long work, so that the work is not in vain. Errors: io; the
-// message names the directory.
+// Checks that a file can be written at `target`, or where its links lead: the directory exists and
+// takes files, and the name is not too long. To be called before long work, so that the work is not
+// in vain. Errors: io; the message names the directory.
 Status check_writable(const std::filesystem::path& target);
 
 // Writes `bytes` to `target` under a temporary name, then renames it.

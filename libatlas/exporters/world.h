@@ -115,7 +115,7 @@ Result<WorldFile> write_gltf(const World& world, const std::filesystem::path& pa
                              AtomicFiles& files, const Context& context);
 
 // Calls the writer for the extension of `path`. check_world_extension() refuses extensions that
-// have no writer (bad_option).
+// have no writer, and for OBJ names that contain line ends (bad_option).
 Result<WorldFile> write_world(const World& world, const std::filesystem::path& path,
                               AtomicFiles& files, const Context& context);
 Status check_world_extension(const std::filesystem::path& path);

@@ -10,8 +10,8 @@
 namespace atlas {
 
 // Distortion of a set of triangles, weighted by surface area, at the set's own area-preserving
-// scale. s1 >= s2 are the singular values of the uv-to-surface map (Sander et al. 2001); 1 is
-// perfect everywhere.
+// scale. s1 >= s2 are the singular values of the uv-to-surface map (Sander et al. 2001, whose
+// Linf is the largest s1); 1 is perfect. ChartSet::distortion says what it holds of many charts.
 struct Distortion {
   double stretch_l2 = 1;      // sqrt of the mean of (s1² + s2²) / 2
   double stretch_linf = 1;    // largest max(s1, 1/s2)

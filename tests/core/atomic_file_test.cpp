@@ -13,6 +13,7 @@
 #include <utility>
 
 #include "libatlas/core/leftovers.h"
+#include "libatlas/core/links.h"
 #include "tests/core/no_root.h"
 #include "tests/scene/temp_folder.h"
 #include "tests/support/full_disk.h"
@@ -141,10 +142,43 @@ TEST(AtomicFiles, LinksAreFollowed) {
   ASSERT_TRUE(write_file(folder / "link.txt", "new").ok());
   EXPECT_TRUE(std::filesystem::is_symlink(folder / "link.txt"));
   EXPECT_EQ(TempFolder::read(folder / "store" / "real.txt"), "new");
-  // A symbolic link that leads nowhere is replaced.
-  std::filesystem::create_symlink("none.txt", folder / "loose.txt");
-  ASSERT_TRUE(write_file(folder / "loose.txt", "new").ok());
-  EXPECT_EQ(TempFolder::read(folder / "loose.txt"), "new");
+}
+
+// The first run through links to a file on another disk is to fill that disk, as the later ones do.
+TEST(AtomicFiles, WhereLinksLeadToNoFileOneIsCreated) {
+  const TempFolder folder;
+  const auto link = [&](const char* to, const char* name) {
+    std::filesystem::create_symlink(to, folder / name);
+  };
+  std::filesystem::create_directories(folder / "store" / "deep");
+  link("store/deep", "folder");
+  link("folder/../second", "first");  // the folder above deep is store, not the one of the link
+  link("deep/third", "store/second");
+  link((folder / "store" / "real.txt").c_str(), "store/deep/third");
+  EXPECT_EQ(end_of_links(folder / "first"), folder / "store" / "real.txt");
+  ASSERT_TRUE(check_writable(folder / "first").ok());
+  for (const char* text : {"once", "twice"}) {
+    ASSERT_TRUE(write_file(folder / "first", text).ok());
+    EXPECT_EQ(TempFolder::read(folder / "store" / "real.txt"), text);
+    for (const char* name : {"first", "store/second", "store/deep/third"})
+      EXPECT_TRUE(std::filesystem::is_symlink(folder / name)) << name;
+  }
+}
+
+TEST(AtomicFiles, LinksWithoutAnEndAreRefusedAndStay) {
+  const TempFolder folder;
+  for (const auto& [to, name] : {std::pair("b", "a"), {"a", "b"}, {"absent/c.txt", "c"}})
+    std::filesystem::create_symlink(to, folder / name);
+  for (const auto& [name, words] :
+       {std::pair("a", "a: cannot be written: its symbolic links lead to no file but back to"),
+        {"c", "absent does not exist (create it first)"}}) {
+    const Status status = check_writable(folder / name);
+    EXPECT_EQ(status.code(), ErrorCode::io) << name;
+    EXPECT_NE(status.message().find(words), std::string::npos) << status.message();
+    EXPECT_FALSE(write_file(folder / name, "text").ok()) << name;
+    EXPECT_TRUE(std::filesystem::is_symlink(folder / name)) << name;
+  }
+  EXPECT_EQ(folder.count(), 3u);
 }
 
 TEST(AtomicFiles, DevicesAndPipesStayWhatTheyAre) {

@@ -220,6 +220,13 @@ TEST(Worlds, NamesOfFilesAndFormats) {
   EXPECT_TRUE(check_world_extension("a.WRZ").ok());
   EXPECT_EQ(check_world_extension("a.stl").message(),
             "a.stl: the target must end in .wrl, .wrz, .obj, .gltf or .glb");
+  // An OBJ file names its MTL file in a line.
+  for (const char* name : {"two\nlines.obj", "two\rlines.OBJ"}) {
+    EXPECT_EQ(check_world_extension(name).code(), ErrorCode::bad_option) << name;
+    EXPECT_NE(check_world_extension(name).message().find("line ends"), std::string::npos);
+  }
+  EXPECT_TRUE(check_world_extension("two\nlines.glb").ok());
+  EXPECT_TRUE(check_world_extension("of\ntwo/lines.obj").ok());
 }
 
 }  // namespace

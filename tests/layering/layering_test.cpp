@@ -186,6 +186,7 @@ TEST(Layering, ProgramsIncludePublicHeadersOnly) {
       {"core/counted.h", "words of messages"},
       {"core/counting_sort.h", "a small algorithm"},
       {"core/disjoint_sets.h", "a small algorithm"},
+      {"core/links.h", "outputs are compared where their links lead"},
       {"core/parse_number.h", "numbers in options are read as those in files are"},
       {"core/text_buffer.h", "numbers in OBJ are written as by the library"},
       {"pack/larger_pages.h", "the programs advise alike"},

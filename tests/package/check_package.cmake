@@ -131,16 +131,54 @@ endforeach()
 run(${CMAKE_COMMAND} -G ${GENERATOR} -S ${BUILD}/tests/package/parent -B ${BUILD}/tests/package/parent/build
     -DCMAKE_CXX_COMPILER=${CXX} -DCMAKE_CXX_FLAGS=${FLAGS} ${disabled})
 
-# Each part can be left out.
+# Programs get the library's folder as a run path, but not where the system looks anyway or CMake is to
+# set none.
+foreach(wanted "" "set(CMAKE_SKIP_RPATH ON)" "list(APPEND CMAKE_CXX_IMPLICIT_LINK_DIRECTORIES \${folder})")
+  set(consumer ${BUILD}/tests/package/run_path)
+  file(REMOVE_RECURSE ${consumer})
+  file(WRITE ${consumer}/CMakeLists.txt "
+cmake_minimum_required(VERSION 3.22)
+project(run_path LANGUAGES CXX)
+file(GLOB module ${prefix}/*/libatlasgeo_images-*.so ${prefix}/*/*/libatlasgeo_images-*.so)
+get_filename_component(folder \${module} DIRECTORY)
+${wanted}
+find_package(libatlas REQUIRED)
+find_package(libatlas REQUIRED)  # twice, as by two folders of a project
+get_target_property(options libatlas::libatlas INTERFACE_LINK_OPTIONS)
+message(STATUS \"options <\${options}> folder <\${folder}>\")
+")
+  run(${CMAKE_COMMAND} -G ${GENERATOR} -S ${consumer} -B ${consumer}/build -DCMAKE_PREFIX_PATH=${prefix}
+      -DCMAKE_CXX_COMPILER=${CXX})
+  string(REGEX MATCH "options <([^>]*)> folder <([^>]*)>" output "${output}")
+  set(expected options-NOTFOUND)
+  if(archive AND wanted STREQUAL "")
+    set(expected "LINKER:-rpath,${CMAKE_MATCH_2}")
+  endif()
+  if(NOT CMAKE_MATCH_1 STREQUAL expected)
+    message(FATAL_ERROR "run path with '${wanted}':\n${output}")
+  endif()
+endforeach()
+
+# Each part can be left out, and so can run paths.
+set(without_APPS -DLIBATLAS_RUNPATH=OFF)
+set(without_EXAMPLES -DCMAKE_INSTALL_PREFIX=/usr)
 foreach(part APPS EXAMPLES)
   file(REMOVE_RECURSE ${BUILD}/tests/package/part)
   run(${CMAKE_COMMAND} -G ${GENERATOR} -S ${SOURCE} -B ${BUILD}/tests/package/part
-      -DCMAKE_CXX_COMPILER=${CXX} -DCMAKE_CXX_FLAGS=${FLAGS} -DLIBATLAS_BUILD_${part}=OFF)
+      -DCMAKE_CXX_COMPILER=${CXX} -DCMAKE_CXX_FLAGS=${FLAGS} -DLIBATLAS_BUILD_${part}=OFF ${without_${part}})
+  file(READ ${BUILD}/tests/package/part/libatlas.pc text)
+  if(text MATCHES "rpath")
+    message(FATAL_ERROR "libatlas.pc sets a run path with ${without_${part}}:\n${text}")
+  endif()
 endforeach()
 
 # Uses the package with pkg-config.
 file(GLOB_RECURSE pc ${prefix}/*/libatlas.pc)
 get_filename_component(pc_dir ${pc} DIRECTORY)
+file(READ ${pc} text)
+if(text MATCHES "//" OR (archive AND NOT text MATCHES "-Wl,-rpath,\\\${libdir}"))
+  message(FATAL_ERROR "${pc}:\n${text}")
+endif()
 run(${CMAKE_COMMAND} -E env PKG_CONFIG_PATH=${pc_dir} pkg-config --cflags --libs libatlas)
 separate_arguments(link UNIX_COMMAND "${output}")
 separate_arguments(flags UNIX_COMMAND "${FLAGS}")

@@ -70,6 +70,7 @@ TEST_F(AtlasPack, WhatCannotBeDoneLeavesNothing) {
       {"images folder -o folder/q", "in the folder that is read"},
       {"mesh uv.obj -o uv.obj", "would overwrite"},
       {"mesh uv.obj -o q.stl", "must end in .obj"},
+      {"mesh uv.obj -o 'two\nlines.obj'", "line ends"},
       {"mesh uv.obj -o q.obj --rotations 3", "--rotations"},
       {"mesh plain.obj -o q.obj", "plain.obj: has no uvs"},
       {"mesh folder -o q.obj", "is a directory"},
@@ -101,11 +102,11 @@ TEST_F(AtlasPack, InterruptLeavesNothing) {
   }
   write("m.obj", obj);
   write("r.csv", sizes);
-  // Background jobs of a shell ignore the signal until they install their own handler, which may
-  // take long on a busy machine.
+  // Background jobs of a shell ignore ctrl-C, so this is what kill(1) sends. Installing the handler
+  // may take long on a busy machine.
   const std::string interrupt =
-      "& for i in $(seq 200); do grep -q 'SigCgt:.*[2367abef]$' /proc/$!/status && break;"
-      " sleep 0.1; done; sleep 0.3; kill -INT $!; wait $!";
+      "& for i in $(seq 200); do grep -q 'SigCgt:.*[4567cdef]...$' /proc/$!/status && break;"
+      " sleep 0.1; done; sleep 0.3; kill -TERM $!; wait $!";
   for (const char* what : {"mesh m.obj -o out.obj", "rects r.csv --page 128x0 -o out.csv"}) {
     const RunResult r = run(fmt::format("{} --preset best --budget 60s {}", what, interrupt));
     EXPECT_EQ(r.exit_code, 130) << what << ": " << r.output;

@@ -49,6 +49,10 @@ TEST(Outputs, ThatAreNotThereYetAreComparedByNameAndFolder) {
   EXPECT_TRUE(check_output(a, {folder / "sub/a.wrl"}).ok());
   EXPECT_TRUE(check_output(a, {folder / "b.wrl"}).ok());
   EXPECT_TRUE(check_output(a, {folder / "gone/a.wrl"}).ok());
+  fs::create_symlink("sub/../a.wrl", folder / "link.wrl");
+  EXPECT_FALSE(check_output(a, {folder / "link.wrl"}).ok());
+  EXPECT_FALSE(check_output(folder / "link.wrl", {a}).ok());
+  EXPECT_TRUE(check_output(folder / "link.wrl", {folder / "b.wrl"}).ok());
   const fs::path before = fs::current_path();
   fs::current_path(folder.path());
   EXPECT_FALSE(check_output("a.wrl", {"./a.wrl"}).ok());

@@ -35,6 +35,7 @@ Shown shown(Stream stream, const std::function<int()>& run) {
   }
   const pid_t child = ::fork();
   if (child == 0) {
+    for (const int signal : {SIGINT, SIGTERM, SIGHUP}) ::signal(signal, SIG_DFL);
     ::dup2(ends[1], STDOUT_FILENO);
     ::dup2(ends[1], STDERR_FILENO);
     ::close(ends[1]);
@@ -149,13 +150,24 @@ TEST(Signals, CancelAndTheThirdEndsTheProgram) {
   EXPECT_TRUE(WIFSIGNALED(thrice.status) && WTERMSIG(thrice.status) == SIGINT);
 }
 
-// Programs that nohup(1) has started go on when the terminal is closed.
-TEST(Signals, OfAClosedTerminalStayIgnoredWhereTheyWere) {
+// Programs that nohup(1) has started go on when the terminal is closed, and those in the background
+// of a script when ctrl-C ends what is in front.
+TEST(Signals, StayIgnoredWhereTheyWere) {
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
+    const Shown s = shown(Stream::pipe, [signal] {
+      ::signal(signal, SIG_IGN);
+      Terminal terminal("prog", false);
+      ::raise(signal);
+      return terminal.context(1).cancelled() ? 1 : 7;
+    });
+    EXPECT_TRUE(WIFEXITED(s.status) && WEXITSTATUS(s.status) == 7) << signal;
+  }
+  // Not even two signals of another kind, after which ctrl-C ends a program, change that.
   const Shown s = shown(Stream::pipe, [] {
-    ::signal(SIGHUP, SIG_IGN);
+    ::signal(SIGINT, SIG_IGN);
     Terminal terminal("prog", false);
-    ::raise(SIGHUP);
-    return terminal.context(1).cancelled() ? 1 : 7;
+    for (const int signal : {SIGTERM, SIGTERM, SIGINT}) ::raise(signal);
+    return 7;
   });
   EXPECT_TRUE(WIFEXITED(s.status) && WEXITSTATUS(s.status) == 7);
 }
