@@ -42,14 +42,14 @@ class ChordFinder {
     });
   }
 
-  std::vector<Chord> run(double least) {
+  std::vector<Chord> run(double least, const Context& context) {
     std::vector<Chord> chords;
     if (outline_.size() < 4 || !(width_ > 0)) return chords;
     choose_corners();
     sort_corners();
     const double hull = hull_of(0, std::uint32_t(corners_.size()), sides_[0]);
     whole_ = sprawl(hull, box_area(sides_[0].hull));
-    for (std::uint32_t i = 0; i < corners_.size(); ++i) {
+    for (std::uint32_t i = 0; i < corners_.size() && !context.cancelled(); ++i) {
       if (concave_[i]) add_chords(i, least, chords);
     }
     std::stable_sort(chords.begin(), chords.end(),
@@ -203,6 +203,12 @@ class ChordFinder {
     const Vec2d &before = corner(i + n - 1), &after = corner(i + 1);
     // Corner i is concave, so b lies to the left of at least one of its sides.
     if (cross(before, a, b) <= 0 && cross(a, after, b) <= 0) return false;
+    // Among teeth, the sides near an end are the ones that hide the other.
+    for (std::uint32_t step = 1; step + 1 < n; ++step) {
+      const std::uint32_t k = (i + (step % 2 ? step / 2 + 1 : n - step / 2 - 1)) % n;
+      if (k == j || (k + 1) % n == j) continue;
+      if (cross_each_other(a, b, corner(k), corner(k + 1))) return false;
+    }
     const Vec2d middle{(a.x + b.x) / 2, (a.y + b.y) / 2};
     bool inside = false;
     for (std::uint32_t k = 0; k < n; ++k) {
@@ -210,8 +216,6 @@ class ChordFinder {
       if ((p.y <= middle.y) != (q.y <= middle.y) && (cross(p, q, middle) > 0) == (q.y > p.y)) {
         inside = !inside;
       }
-      if (k == i || k == j || (k + 1) % n == i || (k + 1) % n == j) continue;
-      if (cross_each_other(a, b, p, q)) return false;
     }
     return inside;
   }
@@ -228,8 +232,9 @@ class ChordFinder {
 }  // namespace
 
 std::vector<Chord> find_chords(std::span<const Vec2d> outline,
-                               std::span<const std::array<std::uint32_t, 2>> edges, double least) {
-  return ChordFinder(outline, edges).run(least);
+                               std::span<const std::array<std::uint32_t, 2>> edges, double least,
+                               const Context& context) {
+  return ChordFinder(outline, edges).run(least, context);
 }
 
 }  // namespace atlas
