@@ -23,22 +23,22 @@ constexpr double kShortSeam = 0.05;
 // Chooses corners of the outline, then chords between them.
 class ChordFinder {
  public:
-  using Edge = std::array<std::uint32_t, 2>;
-
-  ChordFinder(std::span<const Vec2d> outline, std::span<const Edge> edges) : outline_(outline) {
+  ChordFinder(std::span<const Vec2d> outline, std::span<const std::array<std::uint32_t, 2>> edges)
+      : outline_(outline) {
     double twice = 0;
     for (std::size_t i = 2; i < outline.size(); ++i) {
       twice += cross(outline[0], outline[i - 1], outline[i]);
     }
     width_ = std::sqrt(std::max(0.0, 0.5 * twice));
     for (const auto& [a, b] : edges) {
-      edges_.push_back({a, b});
-      edges_.push_back({b, a});
+      const double length = distance(outline[a], outline[b]);
+      edges_.push_back({a, b, length});
+      edges_.push_back({b, a, length});
     }
-    std::sort(edges_.begin(), edges_.end(), [&](const Edge& e, const Edge& f) {
-      const double d =
-          distance(outline_[e[0]], outline_[e[1]]) - distance(outline_[f[0]], outline_[f[1]]);
-      return e[0] != f[0] ? e[0] < f[0] : d != 0 ? d < 0 : e[1] < f[1];
+    std::sort(edges_.begin(), edges_.end(), [](const Edge& e, const Edge& f) {
+      return e.from != f.from       ? e.from < f.from
+             : e.length != f.length ? e.length < f.length
+                                    : e.to < f.to;
     });
   }
 
@@ -58,6 +58,11 @@ class ChordFinder {
   }
 
  private:
+  struct Edge {
+    std::uint32_t from, to;  // indices into the outline
+    double length;
+  };
+
   const Vec2d& corner(std::uint32_t i) const { return outline_[corners_[i % corners_.size()]]; }
 
   struct Side {
@@ -86,10 +91,10 @@ class ChordFinder {
 
   // Returns the shortest edges that start at a place of the outline.
   std::span<const Edge> edges_from(std::uint32_t place) const {
-    const auto less = [](const Edge& e, std::uint32_t p) { return e[0] < p; };
+    const auto less = [](const Edge& e, std::uint32_t p) { return e.from < p; };
     const auto first = std::lower_bound(edges_.begin(), edges_.end(), place, less);
     auto last = first;
-    while (last != edges_.end() && (*last)[0] == place && last - first < kMostEdges) ++last;
+    while (last != edges_.end() && last->from == place && last - first < kMostEdges) ++last;
     return {first, last};
   }
 
@@ -110,7 +115,7 @@ class ChordFinder {
                   &c = outline_[simple[(i + 1) % n]];
       concave[i] = cross(a, b, c) < 0;
       if (!concave[i]) continue;
-      for (const Edge& edge : edges_from(simple[i])) at_edge[edge[1]] = 1;
+      for (const Edge& edge : edges_from(simple[i])) at_edge[edge.to] = 1;
     }
     for (std::size_t i = 0; i < n; ++i) {
       corners_.push_back(simple[i]);
@@ -193,7 +198,7 @@ class ChordFinder {
   bool at_edge_of(std::uint32_t i, std::uint32_t j) const {
     const std::span<const Edge> edges = edges_from(corners_[i]);
     return std::any_of(edges.begin(), edges.end(),
-                       [&](const Edge& edge) { return edge[1] == corners_[j]; });
+                       [&](const Edge& edge) { return edge.to == corners_[j]; });
   }
 
   // Whether the chord lies inside the outline.
