@@ -61,7 +61,7 @@ std::vector<FlatChart> cut_charts(const Work& work, const Context& context, Char
   Frames none;
   const FlattenInput input{work.topology, work.mesh.density, work.options, none};
   cut_limbs(input, cut.charts, context);
-  cut_long_charts(input, cut.charts);
+  cut_long_charts(input, cut.charts, context);
   close_slits(work.topology, cut.charts, context);
   set.timing.limbs_cpu = watch.lap();
   return std::move(cut.charts);

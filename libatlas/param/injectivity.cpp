@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "libatlas/core/bounds.h"
 #include "libatlas/core/predicates.h"
 #include "libatlas/param/border_check.h"
 #include "libatlas/param/halfedges.h"
@@ -15,6 +16,9 @@ namespace {
 
 using param::cross;
 using param::HalfEdges;
+
+// Relative rounding error of slabs, generously.
+constexpr double kRounding = 1e-12;
 
 struct Box {
   double x0, y0, x1, y1;
@@ -66,8 +70,46 @@ double gap(const Edge& e, const Edge& f) {
   return distance(forward ? fb : fa, ea, eb);
 }
 
+// A box that lies along its edges.
+struct Slab {
+  glm::dvec2 along{1, 0}, middle{0, 0}, half{-1, -1};  // half the sizes along and across; -1: unset
+  bool unset() const { return half.x < 0; }
+
+  explicit Slab() = default;
+  explicit Slab(std::span<const Edge> edges) {
+    glm::dvec2 doubled(0, 0);  // at twice the angle, opposite directions add up
+    for (const Edge& e : edges) {
+      const glm::dvec2 d = to_glm(e.b) - to_glm(e.a);
+      doubled += glm::dvec2(d.x * d.x - d.y * d.y, 2 * d.x * d.y);
+    }
+    const double angle = std::atan2(doubled.y, doubled.x) / 2;
+    along = {std::cos(angle), std::sin(angle)};
+    Bounds<glm::dvec2> bounds;
+    for (const Edge& e : edges) {
+      bounds.add(framed(to_glm(e.a)));
+      bounds.add(framed(to_glm(e.b)));
+    }
+    const glm::dvec2 centre = bounds.low + 0.5 * bounds.size();
+    middle = centre.x * along + centre.y * across();
+    half = 0.5 * bounds.size();
+  }
+
+  glm::dvec2 across() const { return {-along.y, along.x}; }
+  glm::dvec2 framed(glm::dvec2 p) const { return {glm::dot(p, along), glm::dot(p, across())}; }
+
+  // Whether a line along one of this slab's sides separates them by more than `clearance`.
+  bool apart(const Slab& other, double clearance) const {
+    const glm::dvec2 off = glm::abs(framed(other.middle - middle));
+    const glm::dvec2 a = glm::abs(framed(other.along)), b(a.y, a.x);
+    const glm::dvec2 reach = half + other.half.x * a + other.half.y * b + clearance;
+    return off.x > reach.x || off.y > reach.y;
+  }
+};
+
 // A binary tree of boxes over the border in its own order. Neighbours on the border are neighbours
-// in the plane, so boxes are as tight as if edges were sorted, whatever their lengths.
+// in the plane, so boxes are as tight as if edges were sorted, whatever their lengths. Teeth along
+// a ragged border lie beside each other while their upright boxes overlap. They are told apart by
+// slabs, which are made when first needed.
 class BorderTree {
  public:
   BorderTree(std::span<const Edge> edges, const InjectivityOptions& options, Injectivity& result)
@@ -75,6 +117,9 @@ class BorderTree {
     if (edges_.empty()) return;
     boxes_.resize(4 * ((edges_.size() + leaf - 1) / leaf));
     build(1, 0, static_cast<std::uint32_t>(edges_.size()));
+    const Box& all = boxes_[1];
+    rounding_ = kRounding *
+                std::max({std::abs(all.x0), std::abs(all.y0), std::abs(all.x1), std::abs(all.y1)});
   }
 
   void find_pairs() {
@@ -137,8 +182,24 @@ class BorderTree {
     return result_.crossings.size() >= std::max<std::size_t>(options_.max_crossings, 1);
   }
 
+  const Slab& slab(const Node& node) {
+    slabs_.resize(boxes_.size());
+    Slab& slab = slabs_[node.id];
+    if (slab.unset()) slab = Slab(edges_.subspan(node.begin, node.end - node.begin));
+    return slab;
+  }
+
+  // Whether slabs show that the nodes, whose boxes meet, are apart.
+  bool beside(const Node& i, const Node& j) {
+    const bool neighbours = i.end == j.begin || j.end == i.begin;  // they share a vertex
+    if (neighbours || i.id == j.id) return false;
+    const Slab &a = slab(i), &b = slab(j);
+    const double clearance = options_.clearance + rounding_;
+    return a.apart(b, clearance) || b.apart(a, clearance);
+  }
+
   void visit(const Node& i, const Node& j) {
-    if (full() || apart(boxes_[i.id], boxes_[j.id])) return;
+    if (full() || apart(boxes_[i.id], boxes_[j.id]) || beside(i, j)) return;
     if (i.id == j.id) {
       if (i.is_leaf()) return test(i, j);
       visit(i.left(), i.left());
@@ -178,6 +239,8 @@ class BorderTree {
   const InjectivityOptions& options_;
   Injectivity& result_;
   std::vector<Box> boxes_;
+  std::vector<Slab> slabs_;  // by node
+  double rounding_ = 0;      // of slabs
 };
 
 // Returns the turning sense of a closed polygon that may touch itself in corners, exactly: the turn

@@ -198,8 +198,8 @@ TEST(Limbs, EdgesOfACoarseMeshMayBeChords) {
     return std::any_of(chords.begin(), chords.end(),
                        [](const Chord& c) { return c.a == 4 && c.b == 0; });
   };
-  EXPECT_FALSE(across(find_chords(outline, {}, 0.1)));
-  EXPECT_TRUE(across(find_chords(outline, edges, 0.1)));
+  EXPECT_FALSE(across(find_chords(outline, {}, 0.1, {})));
+  EXPECT_TRUE(across(find_chords(outline, edges, 0.1, {})));
 }
 
 TEST(Limbs, PiecesOfACurvedChartKeepToTheBound) {

@@ -301,47 +301,5 @@ TEST(CostClasses, OfManyEachHasTheFirstOfItsNeighbours) {
   EXPECT_GT(values.size(), 2000u);
 }
 
-TEST(Hull, ASegmentEndsAtItsEnds) {
-  const Vec2d a{1, 2}, b{4, 6};  // 5 long
-  EXPECT_DOUBLE_EQ(squared_distance_to_segment({1 + 1.5 - 4, 2 + 2 + 3}, a, b), 25);
-  EXPECT_DOUBLE_EQ(squared_distance_to_segment({1 - 3, 2 - 4}, a, b), 25);
-  EXPECT_DOUBLE_EQ(squared_distance_to_segment({4 + 6, 6 + 8}, a, b), 100);
-  EXPECT_DOUBLE_EQ(squared_distance_to_segment({4, 2}, a, a), 9);
-}
-
-TEST(Hull, OfFewPoints) {
-  std::vector<Vec2d> none, hull, three{{0, 0}, {2, 0}, {0, 2}}, line{{0, 0}, {1, 1}, {2, 2}};
-  EXPECT_EQ(hull_area(none, hull), 0);
-  EXPECT_TRUE(hull.empty());
-  EXPECT_EQ(hull_area(three, hull), 2);
-  EXPECT_EQ(hull.size(), 3u);
-  EXPECT_EQ(hull_area(line, hull), 0);
-}
-
-TEST(Hull, BoundsAreTightForRoundShapes) {
-  for (const int corners : {3, 4, 5, 7, 12, 100}) {
-    for (const double slim : {1.0, 0.6, 0.01}) {
-      for (double turn = 0; turn < 1; turn += 0.13) {
-        std::vector<Vec2d> points, hull;
-        for (int i = 0; i < corners; ++i) {
-          const double a = 2 * M_PI * i / corners, x = std::cos(a), y = slim * std::sin(a);
-          points.push_back({1000 + std::cos(turn) * x - std::sin(turn) * y,
-                            std::sin(turn) * x + std::cos(turn) * y});
-        }
-        const ShapeBounds bounds = bound_shape(points);
-        const double area = hull_area(points, hull), box = box_area(hull);
-        EXPECT_GE(bounds.hull, area);
-        EXPECT_GE(bounds.box, box);
-        if (slim > 0.5 && corners > 4) {
-          EXPECT_LT(bounds.hull, 1.2 * area) << corners;
-          EXPECT_LT(bounds.box, 1.3 * box) << corners;
-        }
-      }
-    }
-  }
-  EXPECT_EQ(bound_shape({}).hull, 0);
-  EXPECT_EQ(bound_shape({{1, 2}, {1, 2}}).box, 0);
-}
-
 }  // namespace
 }  // namespace atlas::test

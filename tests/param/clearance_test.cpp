@@ -138,6 +138,26 @@ TEST(Clearance, SharpCornersAreCloseByTheirShorterEdge) {
   EXPECT_GT(found, 100u);
 }
 
+// The teeth of a saw lie beside each other, so that boxes that lie along them tell them apart.
+TEST(Clearance, TeethAreCloseToTheirNeighbours) {
+  Disc saw;
+  saw.positions = {{0, 0, 0}};
+  const std::uint32_t n = 600;
+  std::mt19937 random(1);
+  std::uniform_real_distribution<double> radius(0.9, 1.1);
+  for (std::uint32_t i = 0; i < n; ++i) {
+    const double a = 2 * std::numbers::pi * i / n, r = (i % 2 == 0 ? 1 : 1.5) * radius(random);
+    saw.positions.push_back({r * std::cos(a), r * std::sin(a), 0});
+    saw.triangles.push_back({0, 1 + i, 1 + (i + 1) % n});
+  }
+  const auto uv = drop_z(saw);
+  for (const double clearance : {0.001, 0.01, 0.03, 0.1}) {
+    const Pairs wanted = close_pairs(saw, uv, clearance);
+    EXPECT_EQ(listed_pairs(saw, uv, clearance), wanted) << clearance;
+    EXPECT_EQ(wanted.size() > n, clearance > 0.02) << clearance;
+  }
+}
+
 TEST(Clearance, ListsNoMorePairsThanAskedFor) {
   const Disc d = testing::make_grid(6, 6, [](double u, double v) { return Vec3d{u, v, 0}; });
   const auto uv = drop_z(d);

@@ -192,6 +192,19 @@ TEST(Injectivity, ManyBorderEdgesAreFast) {
   EXPECT_TRUE(check_injectivity(d.view(), drop_z(d)).injective);
 }
 
+TEST(Injectivity, TeethAreFast) {
+  // 2 * 10^5 teeth, the upright boxes of which overlap. Comparing all of these would take minutes.
+  Disc d;
+  const std::uint32_t n = 400000;
+  d.positions = {{0, 0, 0}};
+  for (std::uint32_t i = 0; i < n; ++i) {
+    const double a = 2 * std::numbers::pi * i / n, r = i % 2 == 0 ? 1 : 1.5;
+    d.positions.push_back({r * std::cos(a), r * std::sin(a), 0});
+    d.triangles.push_back({0, 1 + i, 1 + (i + 1) % n});
+  }
+  EXPECT_TRUE(check_injectivity(d.view(), drop_z(d)).injective);
+}
+
 TEST(Injectivity, AHubIsFast) {
   // A fan of 4 * 10^5 triangles. A search for opposite half-edges among all triangles of the hub
   // would take a minute.

@@ -33,10 +33,11 @@ struct Visit {
 }  // namespace
 
 ChordPaths::ChordPaths(const FlatChart& chart, const param::HalfEdges& half_edges,
-                       const std::vector<std::uint32_t>& piece_of)
+                       const std::vector<std::uint32_t>& piece_of, const Context& context)
     : chart_(chart),
       half_edges_(half_edges),
       piece_of_(piece_of),
+      context_(context),
       leaving_(sort_into_buckets(3 * chart.triangles.size(), chart.uvs.size(),
                                  [&](std::size_t h) { return chart.corners[h / 3][h % 3]; })),
       by_(chart.uvs.size(), kUnseen),
@@ -71,7 +72,7 @@ std::vector<std::uint32_t> ChordPaths::search(std::uint32_t piece, std::uint32_t
   std::priority_queue<Visit, std::vector<Visit>, std::greater<>> queue;
   std::vector<std::uint32_t> reached;
   queue.push({0, a, kNoIndex});
-  while (!queue.empty()) {
+  while (!queue.empty() && !context_.cancelled()) {
     const Visit visit = queue.top();
     queue.pop();
     if (by_[visit.uv] != kUnseen) continue;

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "libatlas/charts/flattening/flatten.h"
+#include "libatlas/core/context.h"
 #include "libatlas/core/counting_sort.h"
 #include "libatlas/param/halfedges.h"
 
@@ -18,7 +19,7 @@ class ChordPaths {
   // `piece_of` has one entry per triangle: the piece that it belongs to at the time of a call. All
   // arguments must outlive the object.
   ChordPaths(const FlatChart& chart, const param::HalfEdges& half_edges,
-             const std::vector<std::uint32_t>& piece_of);
+             const std::vector<std::uint32_t>& piece_of, const Context& context);
 
   struct Piece {
     std::span<const std::uint32_t> triangles, outline;  // outline: uvs
@@ -29,8 +30,8 @@ class ChordPaths {
   std::vector<std::array<std::uint32_t, 2>> edges_across(const Piece& piece);
 
   // Returns a path along edges of the piece from uv a to uv b, close to the straight line and with
-  // no edge on the outline, as the half-edges on one side. Empty if there is no such path.
-  // Dijkstra's algorithm.
+  // no edge on the outline, as the half-edges on one side. Empty if there is no such path or the
+  // context is cancelled. Dijkstra's algorithm.
   std::vector<std::uint32_t> find(const Piece& piece, std::uint32_t a, std::uint32_t b);
 
  private:
@@ -47,6 +48,7 @@ class ChordPaths {
   const FlatChart& chart_;
   const param::HalfEdges& half_edges_;
   const std::vector<std::uint32_t>& piece_of_;
+  const Context& context_;
   Buckets leaving_;                   // half-edges by the uv that they leave
   std::vector<std::uint32_t> by_;     // one per uv: the half-edge by which a path arrives
   std::vector<std::uint8_t> on_rim_;  // one per uv

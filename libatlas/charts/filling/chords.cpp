@@ -23,33 +23,33 @@ constexpr double kShortSeam = 0.05;
 // Chooses corners of the outline, then chords between them.
 class ChordFinder {
  public:
-  using Edge = std::array<std::uint32_t, 2>;
-
-  ChordFinder(std::span<const Vec2d> outline, std::span<const Edge> edges) : outline_(outline) {
+  ChordFinder(std::span<const Vec2d> outline, std::span<const std::array<std::uint32_t, 2>> edges)
+      : outline_(outline) {
     double twice = 0;
     for (std::size_t i = 2; i < outline.size(); ++i) {
       twice += cross(outline[0], outline[i - 1], outline[i]);
     }
     width_ = std::sqrt(std::max(0.0, 0.5 * twice));
     for (const auto& [a, b] : edges) {
-      edges_.push_back({a, b});
-      edges_.push_back({b, a});
+      const double length = distance(outline[a], outline[b]);
+      edges_.push_back({a, b, length});
+      edges_.push_back({b, a, length});
     }
-    std::sort(edges_.begin(), edges_.end(), [&](const Edge& e, const Edge& f) {
-      const double d =
-          distance(outline_[e[0]], outline_[e[1]]) - distance(outline_[f[0]], outline_[f[1]]);
-      return e[0] != f[0] ? e[0] < f[0] : d != 0 ? d < 0 : e[1] < f[1];
+    std::sort(edges_.begin(), edges_.end(), [](const Edge& e, const Edge& f) {
+      return e.from != f.from       ? e.from < f.from
+             : e.length != f.length ? e.length < f.length
+                                    : e.to < f.to;
     });
   }
 
-  std::vector<Chord> run(double least) {
+  std::vector<Chord> run(double least, const Context& context) {
     std::vector<Chord> chords;
     if (outline_.size() < 4 || !(width_ > 0)) return chords;
     choose_corners();
     sort_corners();
     const double hull = hull_of(0, std::uint32_t(corners_.size()), sides_[0]);
     whole_ = sprawl(hull, box_area(sides_[0].hull));
-    for (std::uint32_t i = 0; i < corners_.size(); ++i) {
+    for (std::uint32_t i = 0; i < corners_.size() && !context.cancelled(); ++i) {
       if (concave_[i]) add_chords(i, least, chords);
     }
     std::stable_sort(chords.begin(), chords.end(),
@@ -58,6 +58,11 @@ class ChordFinder {
   }
 
  private:
+  struct Edge {
+    std::uint32_t from, to;  // indices into the outline
+    double length;
+  };
+
   const Vec2d& corner(std::uint32_t i) const { return outline_[corners_[i % corners_.size()]]; }
 
   struct Side {
@@ -86,10 +91,10 @@ class ChordFinder {
 
   // Returns the shortest edges that start at a place of the outline.
   std::span<const Edge> edges_from(std::uint32_t place) const {
-    const auto less = [](const Edge& e, std::uint32_t p) { return e[0] < p; };
+    const auto less = [](const Edge& e, std::uint32_t p) { return e.from < p; };
     const auto first = std::lower_bound(edges_.begin(), edges_.end(), place, less);
     auto last = first;
-    while (last != edges_.end() && (*last)[0] == place && last - first < kMostEdges) ++last;
+    while (last != edges_.end() && last->from == place && last - first < kMostEdges) ++last;
     return {first, last};
   }
 
@@ -110,7 +115,7 @@ class ChordFinder {
                   &c = outline_[simple[(i + 1) % n]];
       concave[i] = cross(a, b, c) < 0;
       if (!concave[i]) continue;
-      for (const Edge& edge : edges_from(simple[i])) at_edge[edge[1]] = 1;
+      for (const Edge& edge : edges_from(simple[i])) at_edge[edge.to] = 1;
     }
     for (std::size_t i = 0; i < n; ++i) {
       corners_.push_back(simple[i]);
@@ -193,7 +198,7 @@ class ChordFinder {
   bool at_edge_of(std::uint32_t i, std::uint32_t j) const {
     const std::span<const Edge> edges = edges_from(corners_[i]);
     return std::any_of(edges.begin(), edges.end(),
-                       [&](const Edge& edge) { return edge[1] == corners_[j]; });
+                       [&](const Edge& edge) { return edge.to == corners_[j]; });
   }
 
   // Whether the chord lies inside the outline.
@@ -203,6 +208,12 @@ class ChordFinder {
     const Vec2d &before = corner(i + n - 1), &after = corner(i + 1);
     // Corner i is concave, so b lies to the left of at least one of its sides.
     if (cross(before, a, b) <= 0 && cross(a, after, b) <= 0) return false;
+    // Among teeth, the sides near an end are the ones that hide the other.
+    for (std::uint32_t step = 1; step + 1 < n; ++step) {
+      const std::uint32_t k = (i + (step % 2 ? step / 2 + 1 : n - step / 2 - 1)) % n;
+      if (k == j || (k + 1) % n == j) continue;
+      if (cross_each_other(a, b, corner(k), corner(k + 1))) return false;
+    }
     const Vec2d middle{(a.x + b.x) / 2, (a.y + b.y) / 2};
     bool inside = false;
     for (std::uint32_t k = 0; k < n; ++k) {
@@ -210,8 +221,6 @@ class ChordFinder {
       if ((p.y <= middle.y) != (q.y <= middle.y) && (cross(p, q, middle) > 0) == (q.y > p.y)) {
         inside = !inside;
       }
-      if (k == i || k == j || (k + 1) % n == i || (k + 1) % n == j) continue;
-      if (cross_each_other(a, b, p, q)) return false;
     }
     return inside;
   }
@@ -228,8 +237,9 @@ class ChordFinder {
 }  // namespace
 
 std::vector<Chord> find_chords(std::span<const Vec2d> outline,
-                               std::span<const std::array<std::uint32_t, 2>> edges, double least) {
-  return ChordFinder(outline, edges).run(least);
+                               std::span<const std::array<std::uint32_t, 2>> edges, double least,
+                               const Context& context) {
+  return ChordFinder(outline, edges).run(least, context);
 }
 
 }  // namespace atlas

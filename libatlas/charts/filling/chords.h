@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "libatlas/core/context.h"
 #include "libatlas/core/vec.h"
 
 namespace atlas {
@@ -28,8 +29,9 @@ struct Chord {
 // or to the end of one of the shortest `edges` from there. These are pairs of indices into the
 // outline that an edge of the mesh joins; a coarse mesh may have no other way across. Takes about
 // O(n k + k³) for k chosen corners: at most 100 of the simplified outline (Douglas and Peucker
-// 1973), some 100 between them, and ends of edges.
+// 1973), some 100 between them, and ends of edges. Returns any of the cuts when cancelled.
 std::vector<Chord> find_chords(std::span<const Vec2d> outline,
-                               std::span<const std::array<std::uint32_t, 2>> edges, double least);
+                               std::span<const std::array<std::uint32_t, 2>> edges, double least,
+                               const Context& context);
 
 }  // namespace atlas

@@ -41,12 +41,13 @@ using Triangles = std::vector<std::uint32_t>;  // indices into the chart's trian
 // Cuts one flat chart into pieces.
 class LimbCutter {
  public:
-  LimbCutter(const FlatChart& chart, double all_charts)
+  LimbCutter(const FlatChart& chart, double all_charts, const Context& context)
       : chart_(chart),
         all_charts_(all_charts),
+        context_(context),
         half_edges_(built(chart)),
         piece_of_(chart.triangles.size(), 0),
-        paths_(chart, half_edges_, piece_of_) {
+        paths_(chart, half_edges_, piece_of_, context) {
     const std::size_t n = chart.triangles.size();
     side_.resize(n);
     seen_.resize(3 * n);
@@ -59,17 +60,19 @@ class LimbCutter {
   }
 
   // Returns the triangles of each piece, ascending; empty if cutting does not pay.
-  std::vector<Triangles> run(double wanted, const Context& context) {
+  std::vector<Triangles> run(double wanted) {
     const double box = pieces_[0].box, area = pieces_[0].area;
-    while (!filled(wanted) && pieces_.size() < kMostPieces && !context.cancelled()) {
-      if (!cut_best()) break;
+    // Rectangles never cover less than their pieces do.
+    const double most_gain = box - area, price = kSeamPrice * box / std::sqrt(area);
+    while (!filled(wanted) && pieces_.size() < kMostPieces && price * seam_ <= most_gain) {
+      if (!cut_best() || context_.cancelled()) break;
     }
     heal(std::max(boxes(), area / wanted));
     std::vector<Triangles> result;
-    if (pieces_.size() == 1 || context.cancelled()) return result;
+    if (pieces_.size() == 1 || context_.cancelled()) return result;
     double seam = 0;
     for (const auto& [pair, length] : seams()) seam += length;
-    if (box - boxes() < kSeamPrice * seam / std::sqrt(area) * box) return result;
+    if (box - boxes() < price * seam) return result;
     for (Piece& piece : pieces_) result.push_back(std::move(piece.triangles));
     std::sort(result.begin(), result.end(),
               [](const Triangles& a, const Triangles& b) { return a.front() < b.front(); });
@@ -80,10 +83,11 @@ class LimbCutter {
   struct Piece {
     Triangles triangles;
     std::vector<std::uint32_t> outline;  // uvs along the loop that encloses most area
+    std::vector<Vec2d> corners;          // of its convex hull
     std::size_t borders = 0;
     double area = 0, hull = 0, box = 0, sprawl = 0;
     bool searched = false;
-    double score = 0;              // of its best cut; 0: none
+    double score = 0, length = 0;  // of its best cut; no score: none
     std::vector<Triangles> parts;  // by that cut
   };
 
@@ -137,9 +141,9 @@ class LimbCutter {
         piece.outline = std::move(loop);
       }
     }
-    std::vector<Vec2d> points = positions(piece.outline), hull;
-    piece.hull = hull_area(points, hull);
-    piece.box = box_area(hull);
+    std::vector<Vec2d> points = positions(piece.outline);
+    piece.hull = hull_area(points, piece.corners);
+    piece.box = box_area(piece.corners);
     piece.sprawl = sprawl(piece.hull, piece.box);
     piece.searched = false;
     piece.score = 0;
@@ -175,12 +179,14 @@ class LimbCutter {
   bool cut_best() {
     std::size_t best = pieces_.size();
     for (std::size_t i = 0; i < pieces_.size(); ++i) {
+      if (context_.cancelled()) return false;
       if (!pieces_[i].searched) search(pieces_[i]);
       if (pieces_[i].score > 0 &&
           (best == pieces_.size() || pieces_[i].score > pieces_[best].score))
         best = i;
     }
     if (best == pieces_.size()) return false;
+    seam_ += pieces_[best].length;
     std::vector<Triangles> parts = std::move(pieces_[best].parts);
     std::vector<std::size_t> numbers;
     for (Triangles& part : parts) {
@@ -199,12 +205,14 @@ class LimbCutter {
     piece.searched = true;
     const std::vector<Vec2d> outline = positions(piece.outline);
     const ChordPaths::Piece place{piece.triangles, piece.outline};
-    const std::vector<Chord> chords = find_chords(outline, paths_.edges_across(place), least_fall_);
+    const std::vector<Chord> chords =
+        find_chords(outline, paths_.edges_across(place), least_fall_, context_);
     for (std::size_t i = 0; i < std::min(chords.size(), kChordsTried); ++i) {
       const std::vector<std::uint32_t> path =
           paths_.find(place, piece.outline[chords[i].a], piece.outline[chords[i].b]);
       if (path.empty() || !divide(piece, path)) continue;
       piece.score = chords[i].score;
+      piece.length = length_of(path);
       return;
     }
     const double waste = piece.hull - piece.area;
@@ -215,9 +223,10 @@ class LimbCutter {
   }
 
   void divide_frame(Piece& piece) {
-    MiddleCut cut =
-        cut_middle(chart_, half_edges_, piece.triangles, {kLeastPiece * chart_area(), least_fall_});
+    MiddleCut cut = cut_middle(chart_, half_edges_, piece.triangles,
+                               {kLeastPiece * chart_area(), least_fall_, &context_});
     if (cut.parts.empty()) return;
+    piece.length = cut.length;
     piece.score = cut.fall >= least_fall_ ? cut.fall / cut.length
                                           : kFrameScore * (piece.hull - piece.area) / chart_area();
     piece.parts = std::move(cut.parts);
@@ -251,6 +260,14 @@ class LimbCutter {
     return std::min(area[0], area[1]) > kLeastPiece * (chart_area());
   }
 
+  double length_of(const std::vector<std::uint32_t>& path) const {
+    double length = 0;
+    for (const std::uint32_t h : path) {
+      length += distance(chart_.uvs[half_edges_.from(h)], chart_.uvs[half_edges_.to(h)]);
+    }
+    return length;
+  }
+
   double chart_area() const { return chart_.distortion.uv_area; }
 
   // Returns the length of the cut between each two pieces.
@@ -273,10 +290,11 @@ class LimbCutter {
       double best = 0;
       std::pair<std::uint32_t, std::uint32_t> join{0, 0};
       const double now = boxes();
+      if (context_.cancelled()) return;
       for (const auto& [pair, seam] : seams()) {
         const Piece &p = pieces_[pair.first], &q = pieces_[pair.second];
-        std::vector<Vec2d> points = positions(p.outline), hull;
-        for (const std::uint32_t i : q.outline) points.push_back(chart_.uvs[i]);
+        std::vector<Vec2d> points = p.corners, hull;
+        points.insert(points.end(), q.corners.begin(), q.corners.end());
         hull_area(points, hull);
         const double harm = std::max(1e-3 * now, box_area(hull) - p.box - q.box);
         if (now + harm > most || seam / harm <= best) continue;
@@ -304,6 +322,7 @@ class LimbCutter {
 
   const FlatChart& chart_;
   double all_charts_;  // area of all charts
+  const Context& context_;
   param::HalfEdges half_edges_;
   std::vector<std::uint32_t> piece_of_;  // one per triangle of the chart
   ChordPaths paths_;
@@ -311,13 +330,14 @@ class LimbCutter {
   std::vector<std::uint8_t> seen_, blocked_;  // one per half-edge
   std::vector<Piece> pieces_;
   double least_fall_ = 0;
+  double seam_ = 0;  // length of all cuts made
 };
 
 }  // namespace
 
 std::vector<std::vector<std::uint32_t>> limbs_of(const FlatChart& chart, double wanted,
                                                  double all_charts, const Context& context) {
-  return LimbCutter(chart, all_charts).run(wanted, context);
+  return LimbCutter(chart, all_charts, context).run(wanted);
 }
 
 }  // namespace atlas

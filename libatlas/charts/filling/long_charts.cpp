@@ -74,8 +74,8 @@ std::size_t pieces_for_gutters(const std::vector<FlatChart>& charts, std::size_t
 using Lengths = std::vector<std::vector<std::uint32_t>>;
 
 // Returns the triangles of `count` lengths, about equal ones; nothing if one of them would be
-// empty.
-Lengths lengths_of(const FlatChart& chart, std::size_t count) {
+// empty, or when cancelled.
+Lengths lengths_of(const FlatChart& chart, std::size_t count, const Context& context) {
   std::vector<std::uint32_t> all(chart.triangles.size());
   std::iota(all.begin(), all.end(), 0u);
   param::HalfEdges half_edges;
@@ -87,7 +87,7 @@ Lengths lengths_of(const FlatChart& chart, std::size_t count) {
   std::vector<std::uint32_t> place(all.size(), 0);
   for (std::size_t k = 1; k < count; ++k) {
     const LineCut cut = cutter.cut(cutter.low() + double(k) * length, kBand * length, crumb);
-    if (cut.parts.empty()) return {};
+    if (cut.parts.empty() || context.cancelled()) return {};
     for (const LineCut::Part& part : cut.parts) {
       for (const std::uint32_t t : part.triangles) place[t] += part.beyond;
     }
@@ -138,9 +138,10 @@ bool all_shorter(const std::vector<FlatChart>& pieces, const FlatChart& chart) {
 
 // Tries the lengths from either end, and then one length more, which may keep to the bound where
 // these do not.
-std::vector<FlatChart> cut(const FlattenInput& input, const FlatChart& chart, std::size_t count) {
+std::vector<FlatChart> cut(const FlattenInput& input, const FlatChart& chart, std::size_t count,
+                           const Context& context) {
   for (const std::size_t tried : {count, count + 1}) {
-    Lengths lengths = lengths_of(chart, tried);
+    Lengths lengths = lengths_of(chart, tried, context);
     for (int way = 0; way < 2; ++way) {
       std::vector<FlatChart> pieces = cut(input, chart, lengths);
       if (!pieces.empty() && all_shorter(pieces, chart)) return pieces;
@@ -152,7 +153,8 @@ std::vector<FlatChart> cut(const FlattenInput& input, const FlatChart& chart, st
 
 }  // namespace
 
-std::size_t cut_long_charts(const FlattenInput& input, std::vector<FlatChart>& charts) {
+std::size_t cut_long_charts(const FlattenInput& input, std::vector<FlatChart>& charts,
+                            const Context& context) {
   if (input.options.min_fill <= 0) return 0;
   double area = 0;
   for (const FlatChart& chart : charts) area += chart.distortion.uv_area;
@@ -165,7 +167,7 @@ std::size_t cut_long_charts(const FlattenInput& input, std::vector<FlatChart>& c
     const std::size_t wanted =
         std::max(pieces_for_page(charts, place, area), pieces_for_gutters(charts, place, area));
     if (wanted < 2 || slim < kStrip * double(wanted) / 2) return count;
-    std::vector<FlatChart> pieces = cut(input, *longest, wanted);
+    std::vector<FlatChart> pieces = cut(input, *longest, wanted, context);
     if (pieces.empty()) return count;
     const auto at = charts.erase(longest);
     charts.insert(at, std::move_iterator(pieces.begin()), std::move_iterator(pieces.end()));

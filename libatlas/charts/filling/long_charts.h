@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "libatlas/charts/flattening/flatten.h"
+#include "libatlas/core/context.h"
 
 namespace atlas {
 
@@ -14,7 +15,9 @@ namespace atlas {
 // not. It is also cut where a page of 2048 texels as long as the strip would be mostly gutters
 // around many charts, until the strip is as long as a square page or the gutters take a quarter of
 // the charts' area. Lengths that exceed max_stretch stay with the next one. Pieces are made by
-// part_of_chart(), and take their chart's place. Returns how many charts were cut.
-std::size_t cut_long_charts(const FlattenInput& input, std::vector<FlatChart>& charts);
+// part_of_chart(), and take their chart's place. Returns how many charts were cut, which are fewer
+// when cancelled.
+std::size_t cut_long_charts(const FlattenInput& input, std::vector<FlatChart>& charts,
+                            const Context& context);
 
 }  // namespace atlas

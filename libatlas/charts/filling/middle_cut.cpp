@@ -45,6 +45,7 @@ MiddleCut cut_middle(const FlatChart& chart, const param::HalfEdges& half_edges,
     cutter.face(std::numbers::pi * i / kDirections);
     const double extent = cutter.high() - cutter.low();
     for (const double place : kPlaces) {
+      if (limits.context && limits.context->cancelled()) return middle;
       LineCut made = cutter.cut(cutter.low() + place * extent, kBand * extent, limits.crumb);
       if (made.parts.empty()) continue;
       MiddleCut cut{{}, whole, made.length};

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "libatlas/charts/flattening/flatten.h"
+#include "libatlas/core/context.h"
 #include "libatlas/param/halfedges.h"
 
 namespace atlas {
@@ -18,14 +19,16 @@ struct MiddleCut {
 };
 
 struct MiddleCutLimits {
-  double crumb = 0;       // area; smaller parts stay with a neighbour
-  double least_fall = 0;  // area
+  double crumb = 0;                  // area; smaller parts stay with a neighbour
+  double least_fall = 0;             // area
+  const Context* context = nullptr;  // polled between lines; may be null
 };
 
 // Divides `triangles` (indices into chart.triangles, connected) near lines in several directions
 // and places (LineCutter). Of the cuts that reduce the sprawl by at least least_fall, returns the
 // one with the largest reduction for its length; if there is none, the shortest one through the
-// middle. Returns no parts where triangles are too large for any cut.
+// middle. Returns no parts where triangles are too large for any cut, and any of the cuts when
+// cancelled.
 MiddleCut cut_middle(const FlatChart& chart, const param::HalfEdges& half_edges,
                      std::span<const std::uint32_t> triangles, const MiddleCutLimits& limits);
 

@@ -121,19 +121,41 @@ ShapeBounds bound_shape(const std::vector<Vec2d>& points) {
   return bounds;
 }
 
+namespace {
+
+// Returns the corner at which `value` is highest, walking around the convex polygon from a corner
+// before it.
+template <typename Value>
+std::size_t highest(const std::vector<Vec2d>& hull, std::size_t from, const Value& value) {
+  double most = value(hull[from]);
+  for (std::size_t step = 1; step < hull.size(); ++step) {
+    const std::size_t next = from + 1 < hull.size() ? from + 1 : 0;
+    const double there = value(hull[next]);
+    if (!(there >= most)) break;
+    most = there;
+    from = next;
+  }
+  return from;
+}
+
+}  // namespace
+
 double box_area(const std::vector<Vec2d>& hull) {
   double smallest = 0;
+  // The corners that touch the other three sides move forward only, as the edge does.
+  std::size_t right = hull.size(), top = right, left = right;
   for (std::size_t i = 0; i < hull.size(); ++i) {
-    const Vec2d &a = hull[i], &b = hull[(i + 1) % hull.size()];
+    const Vec2d &a = hull[i], &b = hull[i + 1 < hull.size() ? i + 1 : 0];
     const double dx = b.x - a.x, dy = b.y - a.y, length2 = dx * dx + dy * dy;
     if (!(length2 > 0)) continue;
-    double low = 0, high = 0, far = 0;
-    for (const Vec2d& p : hull) {
-      const double along = (p.x - a.x) * dx + (p.y - a.y) * dy;
-      low = std::min(low, along);
-      high = std::max(high, along);
-      far = std::max(far, (p.y - a.y) * dx - (p.x - a.x) * dy);
-    }
+    const auto along = [&](const Vec2d& p) { return (p.x - a.x) * dx + (p.y - a.y) * dy; };
+    const auto back = [&](const Vec2d& p) { return -along(p); };
+    const auto above = [&](const Vec2d& p) { return (p.y - a.y) * dx - (p.x - a.x) * dy; };
+    right = highest(hull, right < hull.size() ? right : i, along);
+    top = highest(hull, top < hull.size() ? top : right, above);
+    left = highest(hull, left < hull.size() ? left : top, back);
+    const double high = std::max(0.0, along(hull[right])), low = std::min(0.0, along(hull[left])),
+                 far = std::max(0.0, above(hull[top]));
     const double area = (high - low) * far / length2;
     if (smallest == 0 || area < smallest) smallest = area;
   }

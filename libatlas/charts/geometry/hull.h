@@ -36,7 +36,7 @@ struct ShapeBounds {
 ShapeBounds bound_shape(const std::vector<Vec2d>& points);
 
 // Returns the area of the smallest rectangle around a convex polygon, one side of which lies along
-// an edge of the polygon (Freeman and Shapira 1975). Quadratic, for some dozen corners.
+// an edge of the polygon (Freeman and Shapira 1975). Linear, by rotating calipers (Toussaint 1983).
 double box_area(const std::vector<Vec2d>& hull);
 
 }  // namespace atlas
