@@ -9,6 +9,7 @@
 #include "apps/common/program.h"
 #include "apps/common/quantity.h"
 #include "libatlas/core/counted.h"
+#include "libatlas/core/file_extension.h"
 
 namespace atlas::app {
 namespace {
@@ -31,9 +32,11 @@ void add_scene_options(CLI::App& app, ExportCommand& command, RawText& raw) {
   app.add_option("--illumination", command.read.illumination_file,
                  "Take the vertices' light from this file (same vertices, or one `r g b` a line)");
   app.add_option("--quantity", command.options.quantity,
-                 "What the vertices carry: illuminance (reflectance still to apply) or luminance")
-      ->transform(choices<Quantity>(
-          {{"illuminance", Quantity::illuminance}, {"luminance", Quantity::luminance}}))
+                 "What the vertices carry: illuminance (reflectance still to apply), luminance, or "
+                 "colour (sRGB, as scans have; shown as it is)")
+      ->transform(choices<Quantity>({{"illuminance", Quantity::illuminance},
+                                     {"luminance", Quantity::luminance},
+                                     {"colour", Quantity::colour}}))
       ->type_name("NAME")
       ->default_str("illuminance");
   app.add_option("--up", command.options.up, "The scene's up axis: y or z")
@@ -239,6 +242,10 @@ std::optional<ExportCommand> parse_export_command(int argc, char** argv, int& ex
                 "--plan with --quiet tells nothing (leave one out, or add --report)");
     return std::nullopt;
   }
+  // An OBJ that keeps the scene has the colours of its vertices as the scene's file has them.
+  const bool as_written =
+      command.options.keep_scene && lower_extension(command.options.target) == ".obj";
+  command.read.srgb_colours = command.options.quantity == Quantity::colour && !as_written;
   command.options.larger_plain_page = app.count("--atlas-size") == 0;
   if (app.count("--atlases") > 0) command.options.plain_pages = command.options.atlases;
   if (app.count("--mips") > 0) command.options.plain_mip_levels = command.options.mip_levels;

@@ -136,7 +136,7 @@ class Export {
     sampler_.emplace(scene_, options_.quantity);
     Result<LuminanceStatistics> statistics = measure_luminance(*sampler_, context);
     if (!statistics.ok()) return statistics.status();
-    Result<ToneMapping> tone = make_tone_mapping(options_.tone, *statistics);
+    Result<ToneMapping> tone = make_tone_mapping(tone_options(options_), *statistics);
     if (!tone.ok()) return tone.status();
     tone_ = *tone;
     report_.luminance = *statistics;

@@ -117,7 +117,9 @@ class StepList {
   void exposure() {
     add("exposure", plan_.bake,
         plan_.bake     ? fmt::format("{} tone curve, {}", tone_operator_name(options_.tone.op),
-                                 options_.tone.white > 0 ? "white given" : "white measured")
+                                 options_.tone.white > 0                 ? "white given"
+                                     : options_.quantity == Quantity::colour ? "white at 1"
+                                                                             : "white measured")
         : scene_.lit() ? "charts only were asked for"
                        : "the scene carries no illumination: plain uvs, no images");
   }
@@ -125,6 +127,7 @@ class StepList {
   void light(std::uint64_t textured_triangles) {
     add_baked("reflectance", plan_.sample_reflectance,
               options_.quantity == Quantity::luminance ? "the values are luminance already"
+              : options_.quantity == Quantity::colour  ? "the values are colours already"
               : textured_triangles == 0                ? "no textures: one colour a material"
                                         : fmt::format("{} textured triangles", textured_triangles));
     add_baked("tiling", true,
@@ -174,6 +177,13 @@ class StepList {
 };
 
 }  // namespace
+
+ToneOptions tone_options(const ExportOptions& options) {
+  ToneOptions tone = options.tone;
+  // Colours are to look as they are: a measured white would brighten a dark scan.
+  if (options.quantity == Quantity::colour && tone.white <= 0) tone.white = 1;
+  return tone;
+}
 
 double texture_sampling(const ExportOptions& options) {
   // If the user gives a texel length, the diffuse texture's density is kept (the paper's rule).
