@@ -106,7 +106,7 @@ void add_texture_options(CLI::App& app, ExportOptions& options, RawText& raw) {
       ->excludes("--atlases");
   app.add_option("--texel", raw.texel,
                  "Length of a texel on the real surface, e.g. 5mm, without a unit metres; default: "
-                 "what the pages can hold, within 1 to 10 mm");
+                 "what the pages can hold, within 1 to 10 mm, and finer for fine scans");
   add_off_flag(app, "--ignore-texture-density", options.follow_textures,
                "Do not refine where the diffuse texture is finer than --texel");
   app.add_option("--threshold", options.threshold,

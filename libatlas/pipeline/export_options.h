@@ -37,7 +37,8 @@ struct ExportOptions {
   std::int32_t plain_mip_levels = 0;
 
   // The length of a texel on the real surface. 0: as fine as the budget could hold, within 1 to
-  // 10 mm (paper, stage 2), or finer for scenes of centimetres.
+  // 10 mm (paper, stage 2). Where vertices with different light lie closer than 4 mm on average, it
+  // may be a quarter of their distance, and in scenes of centimetres a 64th of their side.
   double texel_metres = 0;
   bool follow_textures = true;   // use finer texels where the diffuse texture is finer
   double threshold = 2.0 / 255;  // of downsizing, in display values, 0..1; 0: no downsizing

@@ -211,6 +211,29 @@ TEST(Advice, TexelsThatPagesCannotHoldAreNamed) {
                     "texels are 25 mm long, not the 5 mm of ExportOptions::texel_metres"));
 }
 
+TEST(Advice, PagesThatLoseTheDetailOfTheLightAreNamed) {
+  ExportReport report = report_of(10, 1, 1024);
+  report.error_measured = true;
+  report.fidelity.lit = 1000;
+  report.fidelity.psnr = 34.9;
+  report.plan.light_spacing_m = 0.001;
+  report.packed_texel = report.texel = 0.002;
+  EXPECT_TRUE(holds(advice_on(report, {}),
+                    "to 34.9 dB only: their texels are 2 mm long, and the vertices that carry the "
+                    "light are 1 mm apart (a shorter ExportOptions::texel_metres)"));
+  report.texel = 0.0015;
+  EXPECT_TRUE(holds(advice_on(report, {}), "(more ExportOptions::atlases or a larger"));
+  const auto silent = [&](auto change) {
+    ExportReport other = report;
+    change(other);
+    return advice_on(other, {}).empty();
+  };
+  EXPECT_TRUE(silent([](ExportReport& r) { r.fidelity.psnr = 35; }));
+  EXPECT_TRUE(silent([](ExportReport& r) { r.packed_texel = 0.0005; }));
+  EXPECT_TRUE(silent([](ExportReport& r) { r.error_measured = false; }));
+  EXPECT_TRUE(silent([](ExportReport& r) { r.plan.light_spacing_m = 0; }));
+}
+
 // A long chart is coarsened to fit its page, whatever the common scale is.
 TEST(Advice, TexelsAreAsLongAsTheUvsOfTheWorldSay) {
   const TempFolder folder;
