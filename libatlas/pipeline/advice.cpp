@@ -52,12 +52,13 @@ std::string on_long_texels(const ExportReport& report, double texels_a_chart) {
 }
 
 std::string on_coarse_texels(const ExportReport& report, const ExportOptions& options) {
+  const bool given = options.texel_metres > 0;
   return fmt::format(
-      "texels are {:.3g} mm long, not the {:.3g} mm of ExportOptions::texel_metres, since the "
-      "pages hold no more (more "
+      "texels are {:.3g} mm long, not the {:.3g} mm {}, since the pages hold no more (more "
       "ExportOptions::atlases or a larger ExportOptions::atlas_size, or a longer "
-      "ExportOptions::texel_metres)",
-      packed_texel_mm(report), 1e3 * options.texel_metres);
+      "ExportOptions::texel_metres{})",
+      packed_texel_mm(report), 1e3 * report.texel * report.metres_per_unit,
+      given ? "of ExportOptions::texel_metres" : "that are usual", given ? "" : " if it will do");
 }
 
 // Pages below this are visibly poorer than the light, as long as finer texels could show more of
@@ -131,7 +132,7 @@ std::vector<std::string> advice_on(const ExportReport& report, const ExportOptio
         "exported)");
   if (report.pages.size() > kManyPages) lines.push_back(on_many_pages(report, options));
   const double asked = options.texel_metres / report.metres_per_unit;
-  const bool coarse = asked > 0 && report.packed_texel > kCoarse * asked;
+  const bool coarse = report.texel > 0 && report.packed_texel > kCoarse * report.texel;
   const double texels_a_chart =
       report.uv_utilization * page_texels(report) / double(report.charts.size());
   if (report.charts.size() >= kManyCharts && texels_a_chart < kFewTexels &&

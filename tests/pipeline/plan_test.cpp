@@ -75,7 +75,9 @@ TEST(Plan, TexelsOfFineScansAreAQuarterOfTheDistanceOfVertices) {
   EXPECT_NEAR(plan(10, 0.1).texel_metres, 0.001, 1e-8) << "vertices 1 cm apart";
   EXPECT_NEAR(plan(400, 0.01).texel_metres, 0.01 / std::sqrt(8.0 * 2048 * 2048), 1e-8)
       << "the pages hold no more";
-  EXPECT_EQ(make_plan(grid(2, 2).scene, options).light_spacing_m, 0) << "unlit";
+  LoadedScene unlit = lit_square(0.1);
+  unlit.scene.illumination.clear();
+  EXPECT_EQ(make_plan(unlit.scene, options).light_spacing_m, 0);
 }
 
 // Six triangles of one size. One is black, one has one light, one has one light and a texture, and
