@@ -84,9 +84,16 @@ void add_chart_options(CLI::App& app, ExportCommand& command) {
       ->default_str("default");
   app.add_flag("--charts-only", options.charts_only,
                "Charts and uvs, no light; on one page, or on as many as --atlases says");
-  app.add_flag("--keep-scene", options.keep_scene,
-               "Write uvs without light into the scene as it is: its objects, materials, textures, "
-               "normals and own uvs stay (.gltf, .glb; .obj has no room for textures and own uvs)");
+  CLI::Option* scene = app.add_flag(
+      "--keep-scene", options.keep_scene,
+      "Write uvs without light into the scene as it is: its objects, materials, textures, "
+      "normals and own uvs stay (.gltf, .glb; .obj has no room for textures and own uvs)");
+  app.add_option(
+         "--uv-set", options.uv_set,
+         "With --keep-scene: write the uvs as TEXCOORD_N in place of what it holds, such as "
+         "those of an earlier run; default: the first free set")
+      ->needs(scene)
+      ->check(within(1, 7));
   app.add_flag("--square", options.square_plain_page,
                "Uvs without light on a square page; else its shape is what packs best, and is "
                "printed");

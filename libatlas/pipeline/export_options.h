@@ -75,6 +75,9 @@ struct ExportOptions {
   // have been requested (ReadOptions::rest). So must normals (ReadOptions::normals), except from
   // glTF to glTF. Textures may stay encoded.
   bool keep_scene = false;
+  // With keep_scene, for glTF: the set of the new uvs, TEXCOORD_<uv_set>, 1..7. What it holds is
+  // replaced, for instance the uvs of an earlier export. 0: the first set that is free.
+  int uv_set = 0;
   bool measure_error = true;  // compare the finished pages with the input's light
 };
 
