@@ -328,8 +328,11 @@ void expect_replaced(const std::vector<int>& sets, int set) {
   const auto triangles = GltfOracle(folder / "w.glb").triangles();
   ASSERT_EQ(triangles.size(), 1u);
   const auto& after = triangles[0].attributes;
-  for (const int own : sets)
-    if (own != set) EXPECT_EQ(after.at("TEXCOORD_" + std::to_string(own))[5], own);
+  for (const int own : sets) {
+    if (own != set) {
+      EXPECT_EQ(after.at("TEXCOORD_" + std::to_string(own))[5], own);
+    }
+  }
   EXPECT_EQ(after.at(written->uv_set)[2], 1.0 / 64);
   EXPECT_FALSE(after.contains("TEXCOORD_" + std::to_string(std::max(set, sets.back()) + 1)));
 }
