@@ -87,7 +87,7 @@ TEST(Advice, FewTexelsOfFullPagesAreNotCalledTooLong) {
   ExportReport report = report_of(16, 1, 16);
   report.packed_texel = 0.025;
   ExportOptions options;
-  options.texel_metres = 0.005;
+  report.texel = options.texel_metres = 0.005;
   EXPECT_TRUE(holds(advice_on(report, options), "texels are 25 mm long"));
 }
 

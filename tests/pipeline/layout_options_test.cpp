@@ -152,7 +152,7 @@ TEST(SizingFactor, IsTheLikelyScaleWhereAChartIsLongerThanAPage) {
   EXPECT_DOUBLE_EQ(factor(100), std::sqrt(4096 / 1e5));
   TextureResult sized;
   sized.charts.resize(1);
-  sized.charts[0].width = sized.charts[0].height = 41;  // more than half of the page with gutters
+  sized.charts[0].width = sized.charts[0].height = 50;  // more than half of the page with gutters
   EXPECT_EQ(refilled_factor(0.2, sized, {texture, options}), 0.2);
   sized.charts[0].width = 1;
   EXPECT_GT(refilled_factor(0.2, sized, {texture, options}), 0.3);
