@@ -9,6 +9,7 @@
 #include "apps/common/program.h"
 #include "apps/common/quantity.h"
 #include "libatlas/core/counted.h"
+#include "libatlas/core/file_extension.h"
 
 namespace atlas::app {
 namespace {
@@ -31,9 +32,11 @@ void add_scene_options(CLI::App& app, ExportCommand& command, RawText& raw) {
   app.add_option("--illumination", command.read.illumination_file,
                  "Take the vertices' light from this file (same vertices, or one `r g b` a line)");
   app.add_option("--quantity", command.options.quantity,
-                 "What the vertices carry: illuminance (reflectance still to apply) or luminance")
-      ->transform(choices<Quantity>(
-          {{"illuminance", Quantity::illuminance}, {"luminance", Quantity::luminance}}))
+                 "What the vertices carry: illuminance (reflectance still to apply), luminance, or "
+                 "colour (sRGB, as scans have; shown as it is)")
+      ->transform(choices<Quantity>({{"illuminance", Quantity::illuminance},
+                                     {"luminance", Quantity::luminance},
+                                     {"colour", Quantity::colour}}))
       ->type_name("NAME")
       ->default_str("illuminance");
   app.add_option("--up", command.options.up, "The scene's up axis: y or z")
@@ -81,9 +84,16 @@ void add_chart_options(CLI::App& app, ExportCommand& command) {
       ->default_str("default");
   app.add_flag("--charts-only", options.charts_only,
                "Charts and uvs, no light; on one page, or on as many as --atlases says");
-  app.add_flag("--keep-scene", options.keep_scene,
-               "Write uvs without light into the scene as it is: its objects, materials, textures, "
-               "normals and own uvs stay (.gltf, .glb; .obj has no room for textures and own uvs)");
+  CLI::Option* scene = app.add_flag(
+      "--keep-scene", options.keep_scene,
+      "Write uvs without light into the scene as it is: its objects, materials, textures, "
+      "normals and own uvs stay (.gltf, .glb; .obj has no room for textures and own uvs)");
+  app.add_option(
+         "--uv-set", options.uv_set,
+         "With --keep-scene: write the uvs as TEXCOORD_N in place of what it holds, such as "
+         "those of an earlier run; default: the first free set")
+      ->needs(scene)
+      ->check(within(1, 7));
   app.add_flag("--square", options.square_plain_page,
                "Uvs without light on a square page; else its shape is what packs best, and is "
                "printed");
@@ -103,7 +113,7 @@ void add_texture_options(CLI::App& app, ExportOptions& options, RawText& raw) {
       ->excludes("--atlases");
   app.add_option("--texel", raw.texel,
                  "Length of a texel on the real surface, e.g. 5mm, without a unit metres; default: "
-                 "what the pages can hold, within 1 to 10 mm");
+                 "what the pages can hold, within 1 to 10 mm, and finer for fine scans");
   add_off_flag(app, "--ignore-texture-density", options.follow_textures,
                "Do not refine where the diffuse texture is finer than --texel");
   app.add_option("--threshold", options.threshold,
@@ -239,6 +249,10 @@ std::optional<ExportCommand> parse_export_command(int argc, char** argv, int& ex
                 "--plan with --quiet tells nothing (leave one out, or add --report)");
     return std::nullopt;
   }
+  // An OBJ that keeps the scene has the colours of its vertices as the scene's file has them.
+  const bool as_written =
+      command.options.keep_scene && lower_extension(command.options.target) == ".obj";
+  command.read.srgb_colours = command.options.quantity == Quantity::colour && !as_written;
   command.options.larger_plain_page = app.count("--atlas-size") == 0;
   if (app.count("--atlases") > 0) command.options.plain_pages = command.options.atlases;
   if (app.count("--mips") > 0) command.options.plain_mip_levels = command.options.mip_levels;

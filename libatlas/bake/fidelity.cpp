@@ -13,8 +13,8 @@
 #include "libatlas/core/parallel.h"
 #include "libatlas/core/percentile.h"
 #include "libatlas/core/random.h"
+#include "libatlas/core/srgb.h"
 #include "libatlas/scene/triangle_area.h"
-#include "libatlas/texture/srgb.h"
 
 namespace atlas {
 namespace {

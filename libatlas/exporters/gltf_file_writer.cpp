@@ -60,7 +60,7 @@ class FileWriter {
         document_(document),
         data_(source_, document),
         materials_(source_, document.json, losses_),
-        set_(free_set(source_)) {
+        set_(world.uv_set > 0 ? world.uv_set : free_set(source_)) {
     json asset = std::move(document_.json["asset"]);
     document_.json = source_.document;
     for (const char* list : {"accessors", "bufferViews"}) document_.json.erase(list);
@@ -216,7 +216,10 @@ class FileWriter {
     for (const auto& target : from.targets)
       primitive["targets"].push_back(rows_of(target, vertices, "data of morph targets"));
     const auto sets = sets_of(rows_names(primitive["attributes"]));
-    if (const auto material = materials_.material(from.material, sets))
+    // Textures that used the uvs which are replaced are now those of the new ones.
+    auto usable = sets;
+    if (sets_of(from.attributes).contains(set_)) usable.insert(set_);
+    if (const auto material = materials_.material(from.material, usable))
       primitive["material"] = *material;
     add_uvs(unified.vertices, sets, primitive["attributes"]);
     add_light(shown, vertices, primitive["attributes"]);
@@ -236,6 +239,7 @@ class FileWriter {
                const std::vector<std::uint32_t>& vertices, const char* loss) {
     json result = json::object();
     for (const auto& [name, accessor] : attributes) {
+      if (name == texcoord_name(set_)) continue;  // replaced
       if (const auto rows = data_.rows(accessor, vertices, name == "POSITION"))
         result[name] = *rows;
       else

@@ -1,5 +1,7 @@
 // glTF 2.0 and GLB of a scene with atlas coordinates: one mesh per object, one primitive per
 // material.
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <map>
 #include <tuple>
@@ -195,6 +197,8 @@ class SceneWriter {
     if (part.normals) result["NORMAL"] = document_.add_vectors(gather(scene_.normals, vertices, 3));
     add_light(vertices, result);
     result["TEXCOORD_1"] = document_.add_uvs(gather(world_.uvs, vertices, 1));
+    for (int set = 2; set <= world_.uv_set; ++set)
+      result[fmt::format("TEXCOORD_{}", set)] = result["TEXCOORD_1"];
     result["TEXCOORD_0"] = part.texcoords
                                ? json(document_.add_uvs(gather(scene_.texcoords, vertices, 2)))
                                : result["TEXCOORD_1"];
@@ -262,7 +266,7 @@ Result<WorldFile> write_gltf_scene(const World& world, const fs::path& path, Ato
     context.report("writing the world", double(i + 1) / double(parts.size()));
   }
   writer.add_nodes();
-  result.uv_set = "TEXCOORD_1";
+  result.uv_set = fmt::format("TEXCOORD_{}", std::max(1, world.uv_set));
   document.add_info("the new uvs: " + result.uv_set);
   result.not_kept = losses_of(*world.scene);
   if (Status s = document.write(path, files, result); !s.ok()) return s;

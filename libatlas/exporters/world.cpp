@@ -59,9 +59,13 @@ Status check_viewpoint(const Viewpoint& view) {
   return {};
 }
 
+constexpr int kMostUvSets = 7;  // behind TEXCOORD_0; engines read no more
+
 Status check_kept_scene(const World& world) {
   const Scene& scene = *world.scene;
   if (Status s = check_scene(scene); !s.ok()) return s;
+  if (world.uv_set < 0 || world.uv_set > kMostUvSets)
+    return wrong("its set of uvs must be within 1..7, or 0 for the first that is free");
   if (scene.indices.empty()) return wrong("its scene has no triangle");
   if (world.pages.size() != 1 || !world.pages[0].image.empty())
     return wrong("a world that keeps its scene has one page, without an image");

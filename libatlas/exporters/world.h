@@ -53,6 +53,9 @@ struct World {
   // without an image, whose `indices` are those of the scene, corner by corner. The scene must
   // outlive the writing.
   const Scene* scene = nullptr;
+  // For `scene` in glTF: the new uvs become the set TEXCOORD_<uv_set>, 1..7, in place of what it
+  // holds. 0: the first set that is free. OBJ has one set and ignores this.
+  int uv_set = 0;
 };
 
 struct WorldFile {
@@ -99,18 +102,19 @@ Result<WorldFile> write_obj(const World& world, const std::filesystem::path& pat
 // metres and adds the origin, since glTF prescribes axis and unit.
 //
 // If World::scene has a source (Scene::source), that file is written again: its nodes, materials,
-// attributes, skins and animations stay as they are. The new uvs are in the first set after
-// TEXCOORD_0 that no primitive shown has (sets before it that a primitive lacks refer to the new
-// uvs, too). A mesh that nodes show several times is written once for each. A scene is refused
-// (bad_input) if the number of its triangles, the range of positions that they use, or a position
-// or its origin is not that of its source. Other members of the scene are not written; see
-// Scene::source for programs that change them.
+// attributes, skins and animations stay as they are. The new uvs are in World::uv_set, else in the
+// first set after TEXCOORD_0 that no primitive shown has (sets before it that a primitive lacks
+// refer to the new uvs, too). A mesh that nodes show several times is written once for each. A
+// scene is refused (bad_input) if the number of its triangles, the range of positions that they
+// use, or a position or its origin is not that of its source. Other members of the scene are not
+// written; see Scene::source for programs that change them.
 //
 // If World::scene has no source, each object becomes a node and a mesh, and each material a
 // primitive, with NORMAL, the scene's own uvs as TEXCOORD_0 and the new ones as TEXCOORD_1 (as both
-// sets if it has none), and its light as COLOR_0 (or _ILLUMINANCE, if values leave 0..1). Materials
-// keep base colours with their textures, opacity and emission. No camera is written. The root nodes
-// are the objects themselves if nothing must be turned, scaled or moved.
+// sets if it has none; with a higher World::uv_set, all sets from TEXCOORD_1 on), and its light as
+// COLOR_0 (or _ILLUMINANCE, if values leave 0..1). Materials keep base colours with their textures,
+// opacity and emission. No camera is written. The root nodes are the objects themselves if nothing
+// must be turned, scaled or moved.
 Result<WorldFile> write_gltf(const World& world, const std::filesystem::path& path,
                              AtomicFiles& files, const Context& context);
 

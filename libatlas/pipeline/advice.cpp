@@ -52,12 +52,33 @@ std::string on_long_texels(const ExportReport& report, double texels_a_chart) {
 }
 
 std::string on_coarse_texels(const ExportReport& report, const ExportOptions& options) {
+  const bool given = options.texel_metres > 0;
   return fmt::format(
-      "texels are {:.3g} mm long, not the {:.3g} mm of ExportOptions::texel_metres, since the "
-      "pages hold no more (more "
+      "texels are {:.3g} mm long, not the {:.3g} mm {}, since the pages hold no more (more "
       "ExportOptions::atlases or a larger ExportOptions::atlas_size, or a longer "
-      "ExportOptions::texel_metres)",
-      packed_texel_mm(report), 1e3 * options.texel_metres);
+      "ExportOptions::texel_metres{})",
+      packed_texel_mm(report), 1e3 * report.texel * report.metres_per_unit,
+      given ? "of ExportOptions::texel_metres" : "that are usual", given ? "" : " if it will do");
+}
+
+// Pages below this are visibly poorer than the light, as long as finer texels could show more of
+// it.
+constexpr double kPoorDecibels = 35;
+
+bool loses_detail(const ExportReport& report) {
+  const double texel = report.packed_texel * report.metres_per_unit;
+  return report.error_measured && report.fidelity.lit > 0 && report.fidelity.psnr < kPoorDecibels &&
+         2 * texel > report.plan.light_spacing_m && report.plan.light_spacing_m > 0;
+}
+
+std::string on_lost_detail(const ExportReport& report) {
+  const bool held = report.packed_texel <= 1.1 * report.texel;
+  return fmt::format(
+      "pages show the light to {:.1f} dB only: their texels are {:.3g} mm long, and the vertices "
+      "that carry the light are {:.3g} mm apart ({})",
+      report.fidelity.psnr, packed_texel_mm(report), 1e3 * report.plan.light_spacing_m,
+      held ? "a shorter ExportOptions::texel_metres"
+           : "more ExportOptions::atlases or a larger ExportOptions::atlas_size");
 }
 
 std::string on_white(const ExportReport& report) {
@@ -111,7 +132,7 @@ std::vector<std::string> advice_on(const ExportReport& report, const ExportOptio
         "exported)");
   if (report.pages.size() > kManyPages) lines.push_back(on_many_pages(report, options));
   const double asked = options.texel_metres / report.metres_per_unit;
-  const bool coarse = asked > 0 && report.packed_texel > kCoarse * asked;
+  const bool coarse = report.texel > 0 && report.packed_texel > kCoarse * report.texel;
   const double texels_a_chart =
       report.uv_utilization * page_texels(report) / double(report.charts.size());
   if (report.charts.size() >= kManyCharts && texels_a_chart < kFewTexels &&
@@ -119,7 +140,10 @@ std::vector<std::string> advice_on(const ExportReport& report, const ExportOptio
     lines.push_back(on_small_charts(report, texels_a_chart));
   else if (asked > 0 && !coarse && texels_a_chart < kHardlyAny)
     lines.push_back(on_long_texels(report, texels_a_chart));
-  if (coarse) lines.push_back(on_coarse_texels(report, options));
+  if (coarse)
+    lines.push_back(on_coarse_texels(report, options));
+  else if (loses_detail(report))
+    lines.push_back(on_lost_detail(report));
   // A measured white suits the light, even if all light is equal.
   if (options.tone.white <= 0 && options.tone.exposure_stops == 0) return lines;
   const LuminanceStatistics& light = report.luminance;

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "libatlas/bake/placement.h"
+#include "libatlas/core/file_extension.h"
 
 namespace atlas {
 namespace {
@@ -30,6 +31,13 @@ Status check_options(const ExportOptions& o) {
     return {ErrorCode::bad_option,
             "ExportOptions::keep_scene: a scene that is kept has its uvs on one page (leave out "
             "ExportOptions::plain_pages)"};
+  }
+  if (o.uv_set < 0 || o.uv_set > 7) return out_of_range("uv_set", "within 1..7, or 0");
+  if (o.uv_set > 0 && (!o.keep_scene || lower_extension(o.target) == ".obj")) {
+    return {ErrorCode::bad_option,
+            "ExportOptions::uv_set: only a glTF file that keeps its scene has several sets of uvs "
+            "(add ExportOptions::keep_scene and write .gltf or .glb, or leave "
+            "ExportOptions::uv_set out)"};
   }
   if (o.atlases < 1) return out_of_range("atlases", "at least 1");
   if (o.atlas_size < 64 || o.atlas_size > 16384 ||

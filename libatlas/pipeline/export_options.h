@@ -37,12 +37,15 @@ struct ExportOptions {
   std::int32_t plain_mip_levels = 0;
 
   // The length of a texel on the real surface. 0: as fine as the budget could hold, within 1 to
-  // 10 mm (paper, stage 2), or finer for scenes of centimetres.
+  // 10 mm (paper, stage 2). Where vertices with different light lie closer than 4 mm on average, it
+  // may be a quarter of their distance, and in scenes of centimetres a 64th of their side.
   double texel_metres = 0;
   bool follow_textures = true;   // use finer texels where the diffuse texture is finer
   double threshold = 2.0 / 255;  // of downsizing, in display values, 0..1; 0: no downsizing
   // Downsizing makes no side shorter, texels; 1..256, and at most what gutters leave of a page.
   std::int32_t min_side = 16;
+  // Quantity::colour: ToneOptions::white 0 is 1 rather than measured, so that colours look as they
+  // are in the scene.
   Quantity quantity = Quantity::illuminance;
   // A chart does not continue across a crease at which the light jumps visibly. Not with
   // ChartOptions::keep_uv_charts.
@@ -72,6 +75,9 @@ struct ExportOptions {
   // have been requested (ReadOptions::rest). So must normals (ReadOptions::normals), except from
   // glTF to glTF. Textures may stay encoded.
   bool keep_scene = false;
+  // With keep_scene, for glTF: the set of the new uvs, TEXCOORD_<uv_set>, 1..7. What it holds is
+  // replaced, for instance the uvs of an earlier export. 0: the first set that is free.
+  int uv_set = 0;
   bool measure_error = true;  // compare the finished pages with the input's light
 };
 

@@ -136,7 +136,7 @@ class Export {
     sampler_.emplace(scene_, options_.quantity);
     Result<LuminanceStatistics> statistics = measure_luminance(*sampler_, context);
     if (!statistics.ok()) return statistics.status();
-    Result<ToneMapping> tone = make_tone_mapping(options_.tone, *statistics);
+    Result<ToneMapping> tone = make_tone_mapping(tone_options(options_), *statistics);
     if (!tone.ok()) return tone.status();
     tone_ = *tone;
     report_.luminance = *statistics;
@@ -163,10 +163,24 @@ class Export {
     return {};
   }
 
+  // Fills sizing_.
+  Result<TextureResult> sized_textures(const TextureOptions& texture, const Context& context) {
+    const Result<std::vector<double>> densities = wanted_densities(*light_, texture, context);
+    if (!densities.ok()) return densities.status();
+    const PageBudget budget{texture, options_};
+    sizing_ = sizing_factor(charts_, *densities, budget);
+    Result<TextureResult> sized = size_chart_textures(*light_, scaled(texture, sizing_), context);
+    if (!sized.ok()) return sized;
+    const double refilled = refilled_factor(sizing_, *sized, budget);
+    if (refilled == sizing_) return sized;
+    sizing_ = refilled;
+    return size_chart_textures(*light_, scaled(texture, sizing_), context);
+  }
+
   Status size_textures() {
     const Context& context = record_.begin("downsizing");
     const TextureOptions texture = texture_options(plan_, report_, options_);
-    Result<TextureResult> sized = size_chart_textures(*light_, texture, context);
+    Result<TextureResult> sized = sized_textures(texture, context);
     if (!sized.ok()) return sized.status();
     const PagesOfCharts pages{view_of(scene_), options_.charts.max_stretch,
                               double(options_.atlases) * options_.atlas_size * options_.atlas_size,
@@ -225,13 +239,14 @@ class Export {
     if (plan_.bake)
       report_.gaps = left_part_gaps(view_of(scene_), charts_, layout_.placements, context);
     report_.grouping = layout_.grouping;
-    report_.scale = layout_.scale;
+    report_.scale = sizing_ * layout_.scale;
     report_.utilization = layout_.utilization;
     report_.uv_utilization = layout_.uv_utilization;
     report_.outlines = layout_.outlines;
     if (plan_.bake)
-      report_.packed_texel = packed_texel(charts_, full_densities_, layout_.scale, report_.texel);
-    std::string quality = fmt::format("scale {:.3f}, {:.0f} % used by charts", layout_.scale,
+      report_.packed_texel =
+          packed_texel(charts_, full_densities_, layout_.scale, report_.texel / sizing_);
+    std::string quality = fmt::format("scale {:.3f}, {:.0f} % used by charts", report_.scale,
                                       100 * layout_.uv_utilization);
     if (charts_.charts.size() > uncut)
       quality += fmt::format(", cut into {}", charts_.charts.size());
@@ -322,6 +337,8 @@ class Export {
   std::optional<LuminanceSampler> sampler_;
   ToneMapping tone_;
   std::optional<ChartLight> light_;
+  double sizing_ = 1;  // factor of the densities asked for at which textures are sized, see
+                       // sizing_factor()
   std::vector<Vec2d> densities_, full_densities_;  // texels per unit, one per chart
   PageLayout layout_;
   std::optional<SimplifiedMesh> coarse_;

@@ -61,6 +61,32 @@ std::vector<double> longest_sides(const ChartSet& charts, std::span<const double
   return limits;
 }
 
+double sizing_factor(const ChartSet& charts, std::span<const double> densities,
+                     const PageBudget& budget) {
+  bool fit = true;
+  for (std::size_t c = 0; c < densities.size(); ++c) {
+    const Vec2d size = charts.charts[c].size;
+    fit = fit && std::max(size.x, size.y) * densities[c] <= budget.texture.max_side;
+  }
+  return fit ? 1 : likely_scale(charts, densities, budget.options);
+}
+
+double refilled_factor(double factor, const TextureResult& sized, const PageBudget& budget) {
+  constexpr double kHardlyFilled = 0.5, kExpectedFill = 0.7;  // shares of the pages
+  const double gutters = 2.0 * gutter_pad(budget.options.mip_levels);
+  double texels = 0;
+  for (const ChartTexture& t : sized.charts) texels += (t.width + gutters) * (t.height + gutters);
+  const double room = texels_of_pages(budget.options);
+  if (factor >= 1 || texels > kHardlyFilled * room) return factor;
+  return std::min(1.0, factor * std::sqrt(kExpectedFill * room / texels));
+}
+
+TextureOptions scaled(TextureOptions options, double factor) {
+  options.texel /= factor;
+  options.texture_sampling *= factor;
+  return options;
+}
+
 double packed_texel(const ChartSet& charts, std::span<const Vec2d> densities, double scale,
                     double texel) {
   double area = 0, texels = 0;

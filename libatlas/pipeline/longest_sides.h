@@ -22,6 +22,20 @@ struct PageBudget {
 std::vector<double> longest_sides(const ChartSet& charts, std::span<const double> densities,
                                   const PageBudget& budget);
 
+// Returns the factor at which textures are to be sized, at most 1. It is below 1 if a chart is
+// longer than a page at the full densities: such a chart would be coarsened to fit its page, and
+// once more with all others by the common scale. Sized by an upper estimate of that scale, charts
+// within longest_sides() fit, and all keep one density.
+double sizing_factor(const ChartSet& charts, std::span<const double> densities,
+                     const PageBudget& budget);
+
+// Returns the factor after textures were sized by `factor`: a larger one if light of one colour, or
+// nearly, left them so small that they would not fill the pages, else the same.
+double refilled_factor(double factor, const TextureResult& sized, const PageBudget& budget);
+
+// Multiplies all densities that the options ask for.
+TextureOptions scaled(TextureOptions options, double factor);
+
 // Returns the mean length of a texel on the pages before downsizing, in scene units, where charts
 // with the given full densities are packed at a common scale; 0 without area. Densities above that
 // of `texel`, the length asked for, count as that.

@@ -13,6 +13,9 @@ namespace atlas {
 // reading the file takes.
 ExportPlan make_plan(const Scene& scene, const ExportOptions& options);
 
+// Returns the tone curve's options for the quantity that the scene holds.
+ToneOptions tone_options(const ExportOptions& options);
+
 // Returns how many texels along a side the atlas has for each texel of a diffuse texture.
 double texture_sampling(const ExportOptions& options);
 

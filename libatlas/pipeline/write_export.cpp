@@ -38,6 +38,7 @@ World make_world(const ExportToWrite& made, const WorldMesh& mesh, ExportReport&
   world.metres_per_unit = made.scene.metres_per_unit;
   if (options.keep_scene) {
     keep_scene(made.scene, made.charts, world);
+    world.uv_set = options.uv_set;
   } else if (holds_viewpoint(options.target)) {
     ViewpointOptions eye;
     eye.up = options.up;

@@ -19,6 +19,9 @@ struct ExportPlan {
   std::vector<PlanStep> steps = {};
   double surface_area_m2 = 0;
   double texel_metres = 0;  // ExportOptions::texel_metres, or the length chosen if that is 0
+  // Mean length of the edges of triangles whose corners are lit differently, which tells how finely
+  // the mesh samples its light, metres; 0 if there are none.
+  double light_spacing_m = 0;
   // Before downsizing, with texels of texel_metres, or finer ones where textures ask for them.
   double estimated_texels = 0;
   double unlit_share = 0;  // share of the area whose triangles have exactly black corners only

@@ -56,9 +56,13 @@ Json json_of(const ExportPlan& plan) {
   Json steps = Json::array();
   for (const PlanStep& step : plan.steps)
     steps.push_back({{"stage", step.stage}, {"run", step.run}, {"reason", step.reason}});
-  return {{"surface_area_m2", plan.surface_area_m2},   {"texel_m", plan.texel_metres},
-          {"estimated_texels", plan.estimated_texels}, {"unlit_share", plan.unlit_share},
-          {"uniform_share", plan.uniform_share},       {"steps", steps}};
+  return {{"surface_area_m2", plan.surface_area_m2},
+          {"texel_m", plan.texel_metres},
+          {"estimated_texels", plan.estimated_texels},
+          {"unlit_share", plan.unlit_share},
+          {"uniform_share", plan.uniform_share},
+          {"light_spacing_m", plan.light_spacing_m},
+          {"steps", steps}};
 }
 
 Json skipped_json(const ExportPlan& plan) {

@@ -241,6 +241,7 @@ class GltfParser {
     for (const glm::dvec3& p : posed->positions) builder_.positions.push_back(from_glm(p));
     const Vertices added{base, count, builder_.normals.size(), !posed->normals.empty()};
     for (const glm::dvec3& n : posed->normals) builder_.normals.push_back(direction(n));
+    builder_.linear_light = true;
     int values = gltf_attribute(raw.attributes, "_ILLUMINANCE");
     if (values < 0) values = gltf_attribute(raw.attributes, "COLOR_0");
     builder_.illumination.resize(base + count, {NAN, NAN, NAN});

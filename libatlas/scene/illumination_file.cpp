@@ -120,6 +120,7 @@ Status read_illumination(const fs::path& path, SceneBuilder& builder, const Cont
             [](const Defect& a, const Defect& b) { return a.kind < b.kind; });
   check_order(other, builder);
   builder.illumination = std::move(*values);
+  builder.linear_light = other.linear_light;
   builder.illumination_file = path.string();
   return {};
 }

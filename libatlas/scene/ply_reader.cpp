@@ -214,6 +214,8 @@ class PlyParser {
                            {"r", "g", "b"},
                            {"red", "green", "blue"},
                            {"diffuse_red", "diffuse_green", "diffuse_blue"}});
+    builder_.linear_light =
+        !rgb.empty() && element_->properties[rgb[0]].name.starts_with("illumin");
     if (rgb.size() == 1) rgb = {rgb[0], rgb[0], rgb[0]};
     const auto uv = find_group(
         {{"s", "t"}, {"u", "v"}, {"texture_u", "texture_v"}, {"texture_s", "texture_t"}});

@@ -17,6 +17,10 @@ struct ReadOptions {
   // If not empty, the illumination is taken from this file instead: OBJ, PLY, OFF or glTF with the
   // same vertices in the same order, or plain text with one `r g b` (or one grey value) per line.
   std::filesystem::path illumination_file = {};
+  // true: values of vertices within 0..1 are sRGB-encoded colours, as scanners and modellers write
+  // them, and are decoded: Scene::illumination is linear in any case. PLY illuminance_r/g/b and
+  // glTF are linear by their definition, and stay as they are.
+  bool srgb_colours = false;
   // false: materials only have their diffuse colour, and glTF files may require formats of textures
   // that are not read, unless `rest` is set
   bool load_textures = true;
@@ -54,8 +58,9 @@ struct LoadedScene {
 // first use.
 // Illumination is read from OBJ `v x y z r g b`; PLY red/green/blue, r/g/b or illuminance_r/g/b
 // (unsigned integers of 8 and 16 bits are normalised); the colours of COFF; glTF _ILLUMINANCE, else
-// COLOR_0. Values are never clamped. Normals are read from OBJ vn; PLY nx, ny, nz; NOFF; glTF
-// NORMAL, transformed by its node, skin and morph targets.
+// COLOR_0. Values are never clamped, and decoded only if ReadOptions::srgb_colours says so. Normals
+// are read from OBJ vn; PLY nx, ny, nz; NOFF; glTF NORMAL, transformed by its node, skin and morph
+// targets.
 //
 // Errors: not_found (no such file, no such buffer); bad_input (malformed as scene/defects.h defines
 // it; no usable triangle; an illumination file with another number of vertices); unsupported

@@ -10,6 +10,7 @@
 #include "libatlas/core/drop_rounding.h"
 #include "libatlas/core/glm_bridge.h"
 #include "libatlas/core/is_finite.h"
+#include "libatlas/core/srgb.h"
 #include "libatlas/image/file_kind.h"
 #include "libatlas/image/image_io.h"
 #include "libatlas/scene/file_bytes.h"
@@ -98,6 +99,13 @@ void SceneBuilder::sanitise_values() {
     defects.add(DefectKind::texcoord_not_finite,
                 [&] { return fmt::format("{}: texture coordinate {}", file, i + 1); });
   }
+}
+
+// Values beyond 0..1 are no encoded colours.
+void SceneBuilder::decode_colours() {
+  for (Vec3f& rgb : illumination)
+    for (float* value : {&rgb.x, &rgb.y, &rgb.z})
+      if (*value > 0 && *value < 1) *value = srgb_decode(*value);
 }
 
 Status SceneBuilder::place_positions(Scene& scene) const {
@@ -259,6 +267,7 @@ Result<LoadedScene> SceneBuilder::finish(const ReadOptions& options, const Conte
                     why));
   }
   sanitise_values();
+  if (options.srgb_colours && !linear_light) decode_colours();
   LoadedScene loaded;
   loaded.uv_aspect = uv_aspect;
   Scene& scene = loaded.scene;

@@ -61,6 +61,7 @@ class SceneBuilder {
   std::string illumination_file;  // for messages, if the illumination is another file's
   std::vector<Vec3d> positions;
   std::vector<Vec3f> illumination;  // empty or 1 per vertex; checked by finish()
+  bool linear_light = false;        // whether the format says that the illumination is linear
   std::vector<Vec2f> texcoords;
   std::vector<Vec3f> normals;  // of any length; only filled if wants_normals is set
   std::vector<RawMaterial> materials;
@@ -176,6 +177,7 @@ class SceneBuilder {
   }
 
   void sanitise_values();
+  void decode_colours();
   Status place_positions(Scene& scene) const;
   void keep_used(Scene& scene);
   void move_texcoords();

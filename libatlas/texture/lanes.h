@@ -2,7 +2,7 @@
 // Clang). Inner loops use them for colours.
 #pragma once
 
-#include "libatlas/texture/srgb.h"
+#include "libatlas/core/srgb.h"
 
 namespace atlas {
 

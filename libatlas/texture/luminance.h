@@ -15,13 +15,16 @@ struct TextureLevels;
 enum class Quantity {
   illuminance,  // E; the diffuse reflectance still has to be applied
   luminance,    // the light that leaves the surface; it is taken as it is
+  // The linear colour that the surface is to show, within 0..1 (ReadOptions::srgb_colours decodes
+  // it). It is taken as it is, and an export shows 1 white unless ToneOptions::white is given.
+  colour,
 };
 
 // "Luminance" here is, as in Barladian et al. (section 2), illuminance times diffuse reflectance,
 // linear RGB in the unit of the input. For a Lambertian surface lit with E lux that is the luminous
 // exitance M = rho E in lm/m²; its photometric luminance is L = M / pi in cd/m². The factor pi is a
 // constant that exposure absorbs, so it is left out: values stay comparable with the input's.
-// With Quantity::luminance the values are the input's own (cd/m²).
+// With Quantity::luminance (cd/m²) and Quantity::colour the values are the input's own.
 //
 // The sampler refers to the scene, which must outlive it and pass check_scene(). It builds mip
 // chains of the textures (8-bit, a third of the textures' size), and keeps up to 16 MiB of small
@@ -58,8 +61,8 @@ class LuminanceSampler {
   // number or is beyond kMostLight, and 3 if there is none. Readers leave no such illumination.
   int bad_corner(std::uint32_t t) const;
 
-  // Returns texture_density() of the scene, or 0 if the scene holds luminance, because textures are
-  // not applied to that.
+  // Returns texture_density() of the scene, or 0 unless the scene holds illuminance, because
+  // textures are applied to that only.
   double texture_density(std::uint32_t t) const;
 
   const Scene& scene() const;

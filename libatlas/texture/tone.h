@@ -5,10 +5,10 @@
 #include <string_view>
 
 #include "libatlas/core/context.h"
+#include "libatlas/core/srgb.h"
 #include "libatlas/core/status.h"
 #include "libatlas/core/vec.h"
 #include "libatlas/texture/luminance.h"
-#include "libatlas/texture/srgb.h"
 
 namespace atlas {
 

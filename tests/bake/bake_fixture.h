@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "libatlas/bake/bake.h"
-#include "libatlas/texture/srgb.h"
+#include "libatlas/core/srgb.h"
 #include "tests/texture/lit_shapes.h"
 
 namespace atlas {

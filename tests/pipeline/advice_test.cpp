@@ -64,7 +64,7 @@ TEST(Advice, TexelsAsLongAsChartsAreNamed) {
   ExportReport report = report_of(16, 1, 16);
   ExportOptions options;
   EXPECT_TRUE(advice_on(report, options).empty());  // no texel size was given
-  report.packed_texel = options.texel_metres = 5;
+  report.packed_texel = report.texel = options.texel_metres = 5;
   EXPECT_TRUE(holds(advice_on(report, options), "16 charts have 11 texels each on average, 5e+03"));
   EXPECT_TRUE(advice_on(report_of(2, 1, 16), options).empty());
 }
@@ -87,7 +87,7 @@ TEST(Advice, FewTexelsOfFullPagesAreNotCalledTooLong) {
   ExportReport report = report_of(16, 1, 16);
   report.packed_texel = 0.025;
   ExportOptions options;
-  options.texel_metres = 0.005;
+  report.texel = options.texel_metres = 0.005;
   EXPECT_TRUE(holds(advice_on(report, options), "texels are 25 mm long"));
 }
 
@@ -204,14 +204,41 @@ TEST(Advice, TexelsThatPagesCannotHoldAreNamed) {
   ExportReport report = report_of(100, 8, 1024);
   report.metres_per_unit = 0.01;
   report.packed_texel = 2.5;
-  EXPECT_TRUE(advice_on(report, {}).empty());  // no texel size was given
+  report.texel = 1;  // chosen by the plan
+  EXPECT_TRUE(holds(advice_on(report, {}), "texels are 25 mm long, not the 10 mm that are usual"));
   ExportOptions options;
+  report.texel = 0.5;
   options.texel_metres = 0.005;
   EXPECT_TRUE(holds(advice_on(report, options),
                     "texels are 25 mm long, not the 5 mm of ExportOptions::texel_metres"));
+  report.texel = 1.25;
+  EXPECT_TRUE(advice_on(report, {}).empty());
 }
 
-// A long chart is coarsened to fit its page, whatever the common scale is.
+TEST(Advice, PagesThatLoseTheDetailOfTheLightAreNamed) {
+  ExportReport report = report_of(10, 1, 1024);
+  report.error_measured = true;
+  report.fidelity.lit = 1000;
+  report.fidelity.psnr = 34.9;
+  report.plan.light_spacing_m = 0.001;
+  report.packed_texel = report.texel = 0.002;
+  EXPECT_TRUE(holds(advice_on(report, {}),
+                    "to 34.9 dB only: their texels are 2 mm long, and the vertices that carry the "
+                    "light are 1 mm apart (a shorter ExportOptions::texel_metres)"));
+  report.texel = 0.0015;
+  EXPECT_TRUE(holds(advice_on(report, {}), "(more ExportOptions::atlases or a larger"));
+  const auto silent = [&](auto change) {
+    ExportReport other = report;
+    change(other);
+    return advice_on(other, {}).empty();
+  };
+  EXPECT_TRUE(silent([](ExportReport& r) { r.fidelity.psnr = 35; }));
+  EXPECT_TRUE(silent([](ExportReport& r) { r.packed_texel = 0.0005; }));
+  EXPECT_TRUE(silent([](ExportReport& r) { r.error_measured = false; }));
+  EXPECT_TRUE(silent([](ExportReport& r) { r.plan.light_spacing_m = 0; }));
+}
+
+// A chart that is longer than its page at full size is scaled once, as all charts are.
 TEST(Advice, TexelsAreAsLongAsTheUvsOfTheWorldSay) {
   const TempFolder folder;
   ExportOptions options;
@@ -230,6 +257,8 @@ TEST(Advice, TexelsAreAsLongAsTheUvsOfTheWorldSay) {
   const double texel = std::sqrt(40 * 20 / uv_area);
   EXPECT_GT(texel, 0.3);
   EXPECT_NEAR(report->packed_texel, texel, 0.02 * texel);
+  EXPECT_EQ(report->capped_charts, 0u);
+  EXPECT_NEAR(report->packed_texel * report->scale, options.texel_metres, 1e-9);
   ASSERT_FALSE(report->advice.empty());
   double said = 0;
   ASSERT_EQ(std::sscanf(report->advice[0].c_str(), "texels are %lf mm long", &said), 1)

@@ -110,5 +110,21 @@ TEST(ExportOptions, AKeptSceneHasOnePage) {
   EXPECT_EQ(code("w.wrl", 1), ErrorCode::bad_option);
 }
 
+TEST(ExportOptions, OnlyAKeptSceneOfGltfHasSeveralSetsOfUvs) {
+  const auto code = [](const char* target, int uv_set, bool keep_scene) {
+    const Status status = check([&](ExportOptions& o) {
+      o.target = target;
+      o.uv_set = uv_set;
+      o.keep_scene = keep_scene;
+    });
+    return status.code();
+  };
+  for (const int set : {0, 1, 7}) EXPECT_EQ(code("w.glb", set, true), ErrorCode::ok);
+  for (const int set : {-1, 8}) EXPECT_EQ(code("w.glb", set, true), ErrorCode::bad_option);
+  EXPECT_EQ(code("w.glb", 1, false), ErrorCode::bad_option);
+  EXPECT_EQ(code("w.obj", 1, true), ErrorCode::bad_option);
+  EXPECT_EQ(code("w.obj", 0, true), ErrorCode::ok);
+}
+
 }  // namespace
 }  // namespace atlas::test

@@ -54,6 +54,26 @@ const StageReport& stage_of(const ExportReport& report, std::string_view name) {
   return report.stages[0];
 }
 
+// A grey of a scan, whose file says 128, is a grey of 128 on the page.
+TEST(ExportPages, ColoursAreShownAsTheyAre) {
+  for (const float white : {0.0f, 2.0f}) {
+    const TempFolder folder;
+    ExportOptions options = full_pages(folder);
+    options.quantity = Quantity::colour;
+    options.tone.white = white;
+    LoadedScene scan = two_sheets();
+    scan.scene.illumination.assign(scan.scene.positions.size(), {0.2158605f, 1, 0});
+    scan.scene.materials[0].diffuse = {0.5f, 0.5f, 0.5f};  // not applied
+    exported(scan, options);
+    const auto page = read_image8(folder / "world_0.png");
+    ASSERT_TRUE(page.ok()) << page.status().message();
+    const std::uint8_t* texel = page->at(page->width / 3, page->height / 3);
+    EXPECT_EQ(int(texel[0]), white > 0 ? 92 : 128);
+    EXPECT_EQ(int(texel[1]), white > 0 ? 188 : 255);
+    EXPECT_EQ(int(texel[2]), 0);
+  }
+}
+
 TEST(ExportPages, TheReportIsThatOfTheFiles) {
   const TempFolder folder;
   ExportOptions options = full_pages(folder);

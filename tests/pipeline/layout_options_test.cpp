@@ -135,5 +135,33 @@ TEST(LongestSides, AreDoubledUntilTheSmallestBoxesTakeHalfThePages) {
   EXPECT_DOUBLE_EQ(limit({10, 10}, 10, options), 2 * half_page) << "4 boxes instead of 9";
 }
 
+// A chart of 10 x 1 units on one page of 64 x 64 texels, 60 without gutters.
+TEST(SizingFactor, IsTheLikelyScaleWhereAChartIsLongerThanAPage) {
+  ExportOptions options;
+  options.atlases = 1;
+  options.atlas_size = 64;
+  options.threshold = 0;
+  TextureOptions texture;
+  texture.max_side = 60;
+  const auto factor = [&](double density) {
+    const std::vector<double> densities{density};
+    return sizing_factor(rectangles(1, {10, 1}), densities, {texture, options});
+  };
+  EXPECT_EQ(factor(6), 1) << "as long as the page";
+  EXPECT_EQ(factor(7), 1) << "longer, but the pages hold its texels";
+  EXPECT_DOUBLE_EQ(factor(100), std::sqrt(4096 / 1e5));
+  TextureResult sized;
+  sized.charts.resize(1);
+  sized.charts[0].width = sized.charts[0].height = 50;  // more than half of the page with gutters
+  EXPECT_EQ(refilled_factor(0.2, sized, {texture, options}), 0.2);
+  sized.charts[0].width = 1;
+  EXPECT_GT(refilled_factor(0.2, sized, {texture, options}), 0.3);
+  EXPECT_EQ(refilled_factor(0.9, sized, {texture, options}), 1);
+  EXPECT_EQ(refilled_factor(1, sized, {texture, options}), 1);
+  const TextureOptions half = scaled(texture, 0.5);
+  EXPECT_DOUBLE_EQ(half.texel, 2 * texture.texel);
+  EXPECT_DOUBLE_EQ(half.texture_sampling, 0.5 * texture.texture_sampling);
+}
+
 }  // namespace
 }  // namespace atlas::test

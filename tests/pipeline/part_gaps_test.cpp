@@ -5,11 +5,11 @@
 #include <cmath>
 
 #include "libatlas/bake/bake.h"
+#include "libatlas/core/srgb.h"
 #include "libatlas/pipeline/page_layout.h"
 #include "libatlas/pipeline/part_gaps.h"
 #include "libatlas/scene/check_scene.h"
 #include "libatlas/texture/chart_textures.h"
-#include "libatlas/texture/srgb.h"
 #include "tests/support/shapes.h"
 
 namespace atlas::test {

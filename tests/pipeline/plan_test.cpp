@@ -61,6 +61,26 @@ TEST(Plan, TexelsFillTheBudgetWithinTheirLimits) {
   EXPECT_EQ(texel(1), 0.02);
 }
 
+// The quads of the grid have two edges of a side, and a diagonal.
+TEST(Plan, TexelsOfFineScansAreAQuarterOfTheDistanceOfVertices) {
+  ExportOptions options;
+  options.target = "w.obj";
+  const auto plan = [&](int n, double side) {
+    return make_plan(lit_scene(grid(n, n, side, side)).scene, options);
+  };
+  const double edge = (2 + std::sqrt(2.0)) / 3;
+  const ExportPlan scan = plan(100, 0.1);
+  EXPECT_NEAR(scan.light_spacing_m, 0.001 * edge, 1e-8);
+  EXPECT_NEAR(scan.texel_metres, 0.00025 * edge, 1e-8);
+  EXPECT_NEAR(plan(10, 0.1).texel_metres, 0.001, 1e-8) << "vertices 1 cm apart";
+  options.atlases = 1;
+  options.atlas_size = 256;
+  EXPECT_NEAR(plan(400, 0.01).texel_metres, 0.01 / 256, 1e-8) << "the pages hold no more";
+  LoadedScene unlit = lit_square(0.1);
+  unlit.scene.illumination.clear();
+  EXPECT_EQ(make_plan(unlit.scene, options).light_spacing_m, 0);
+}
+
 // Six triangles of one size. One is black, one has one light, one has one light and a texture, and
 // the others have a corner of another light each.
 TEST(Plan, SharesAreThoseOfTheSurface) {

@@ -62,6 +62,7 @@ TEST(ReportJson, FiguresOfTheExportAreInTheirPlaces) {
                       {"/plan/surface_area_m2", &plan.surface_area_m2},
                       {"/plan/texel_m", &plan.texel_metres},
                       {"/plan/estimated_texels", &plan.estimated_texels},
+                      {"/plan/light_spacing_m", &plan.light_spacing_m},
                       {"/plan/unlit_share", &plan.unlit_share},
                       {"/plan/uniform_share", &plan.uniform_share},
                       {"/stages/0/wall_ms", &stage.wall_seconds, 1000},

@@ -6,13 +6,16 @@
 #include <cstring>
 #include <random>
 
+#include "libatlas/core/srgb.h"
 #include "libatlas/scene/reader.h"
+#include "tests/scene/load_scene.h"
 #include "tests/scene/sound.h"
 #include "tests/scene/temp_folder.h"
 
 namespace atlas {
 namespace {
 
+using test::load;
 using test::TempFolder;
 
 // Writes a PLY file in any format and with any types, one value after the other.
@@ -265,6 +268,32 @@ TEST(Ply, NamesOfColoursAndTexcoords) {
       EXPECT_EQ(loaded->scene.texcoords[0], (Vec2f{.25f, .5f})) << uv[0];
     }
   }
+}
+
+// Colours are decoded only where they are asked for, are not linear by their name, and lie within
+// 0 to 1.
+TEST(Ply, ColoursOfScansAreDecoded) {
+  const TempFolder folder;
+  const auto file = [&](const char* type, const std::array<const char*, 3>& names,
+                        const char* values) {
+    std::string header = "ply\nformat ascii 1.0\nelement vertex 3\n";
+    for (const char* name : {"x", "y", "z"}) header += fmt::format("property float {}\n", name);
+    for (const char* name : names) header += fmt::format("property {} {}\n", type, name);
+    header += "element face 1\nproperty list uchar int vertex_indices\nend_header\n";
+    return folder.write("c.ply",
+                        header + fmt::format("0 0 0 {0}\n1 0 0 {0}\n0 1 0 {0}\n3 0 1 2\n", values));
+  };
+  const ReadOptions scan{.srgb_colours = true};
+  const auto bytes = file("uchar", {"red", "green", "blue"}, "128 0 255");
+  EXPECT_EQ(load(bytes).scene.illumination[1], (Vec3f{128 / 255.0f, 0, 1}));
+  const Vec3f decoded = load(bytes, scan).scene.illumination[1];
+  EXPECT_EQ(srgb_encode8(decoded.x), 128);
+  EXPECT_EQ(decoded.y, 0);
+  EXPECT_EQ(decoded.z, 1);
+  const auto floats = file("float", {"red", "green", "blue"}, "0.5 2 -1");
+  EXPECT_EQ(load(floats, scan).scene.illumination[0], (Vec3f{srgb_decode(0.5f), 2, -1}));
+  const auto light = file("float", {"illuminance_r", "illuminance_g", "illuminance_b"}, "0.5 0 1");
+  EXPECT_EQ(load(light, scan).scene.illumination[0], (Vec3f{0.5f, 0, 1}));
 }
 
 // MeshLab writes textures like this: a comment for each, and a number in each face.

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <random>
 
-#include "libatlas/texture/srgb.h"
+#include "libatlas/core/srgb.h"
 #include "tests/texture/lit_shapes.h"
 
 namespace atlas {

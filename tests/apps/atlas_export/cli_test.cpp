@@ -96,6 +96,18 @@ TEST_F(AtlasExport, TellsWhatItDoesNotKeep) {
   EXPECT_EQ(again.exit_code, 0) << again.output;
   EXPECT_NE(again.output.find("the new uvs: TEXCOORD_2"), std::string::npos) << again.output;
   EXPECT_EQ(again.output.find("not kept"), std::string::npos) << again.output;
+  const RunResult same =
+      run(fmt::format("{0}/w.glb -o {0}/v.glb --keep-scene --uv-set 1", dir_.string()));
+  EXPECT_EQ(same.exit_code, 0) << same.output;
+  EXPECT_NE(same.output.find("the new uvs: TEXCOORD_1"), std::string::npos) << same.output;
+  EXPECT_EQ(run(fmt::format("{0}/w.glb -o {0}/v.glb --uv-set 1", dir_.string())).exit_code, 2);
+  EXPECT_EQ(
+      run(fmt::format("{0}/w.glb -o {0}/v.glb --keep-scene --uv-set 8", dir_.string())).exit_code,
+      2);
+  const RunResult obj =
+      run(fmt::format("{0}/w.glb -o {0}/v.obj --keep-scene --uv-set 1", dir_.string()));
+  EXPECT_NE(obj.exit_code, 0);
+  EXPECT_NE(obj.output.find("--uv-set: only a glTF file"), std::string::npos) << obj.output;
 }
 
 // A number for an error that was not measured would read as perfect, or as very bad.

@@ -43,6 +43,9 @@ TEST(ExportOptions, NamesOfChoicesMeanThemselves) {
   EXPECT_EQ(parsed({"--up", "y"}).options.up, Up::y);
   EXPECT_EQ(parsed({"--quantity", "luminance"}).options.quantity, Quantity::luminance);
   EXPECT_EQ(parsed({"--quantity", "illuminance"}).options.quantity, Quantity::illuminance);
+  EXPECT_EQ(parsed({"--quantity", "colour"}).options.quantity, Quantity::colour);
+  EXPECT_TRUE(parsed({"--quantity", "colour"}).read.srgb_colours);
+  EXPECT_FALSE(parsed({"--quantity", "luminance"}).read.srgb_colours);
 }
 
 TEST(ExportOptions, OfCharts) {

@@ -118,6 +118,8 @@ TEST_F(ExportFlags, ThePlanShowsThem) {
         {"--cone 60", "normals within 60° of a chart's axis"},
         {"--max-stretch 1.1", "stretch at most 1.1 over"},
         {"--quantity luminance", "skip reflectance  the values are luminance already"},
+        {"--quantity colour", "skip reflectance  the values are colours already"},
+        {"--quantity colour", "linear tone curve, white at 1"},
         {"--quantity ILLUMINANCE", "skip reflectance  no textures"},
         {"--charts-only", "skip exposure     charts only were asked for"},
         {"--atlases 3 --atlas-size 512", "packing      3 pages of 512²"}})

@@ -1,4 +1,4 @@
-#include "libatlas/texture/srgb.h"
+#include "libatlas/core/srgb.h"
 
 #include <gtest/gtest.h>
 
