@@ -38,9 +38,12 @@ struct LoadedScene {
   DefectReport defects = {};  // what was left out or replaced
   // Files that were read besides the scene's own: material libraries, buffers.
   std::vector<std::filesystem::path> files = {};
-  // Width / height of the page that the uvs were made for, if an OBJ or a glTF says so as libatlas
-  // writes it (scene/uv_page.h); else 0.
+  // Width / height of the pages that the uvs were made for, if an OBJ, glTF or VRML file says so as
+  // libatlas writes it (scene/uv_page.h) and all pages have one shape; else 0.
   double uv_aspect = 0;
+  // The same, one per material of the scene, if the pages differ in shape (then 1 for a material of
+  // which the file says nothing); else empty. For ChartOptions::material_uv_aspects.
+  std::vector<double> material_uv_aspects = {};
 };
 
 // Reads the scene at `path`; the extension (.obj .ply .off .stl .gltf .glb .wrl .wrz, any case)

@@ -247,6 +247,19 @@ void SceneBuilder::place_materials(Scene& scene) {
   scene.not_read = losses.counts();
 }
 
+void SceneBuilder::place_uv_aspects(LoadedScene& loaded) const {
+  std::vector<double> aspects;
+  for (const Material& m : loaded.scene.materials) aspects.push_back(uv_pages.aspect_of(m.name));
+  if (aspects.empty()) aspects.push_back(uv_pages.aspect_of({}));
+  loaded.uv_aspect = aspects[0];
+  if (std::all_of(aspects.begin(), aspects.end(), [&](double a) { return a == aspects[0]; }))
+    return;
+  loaded.uv_aspect = 0;
+  for (double& aspect : aspects)
+    if (aspect == 0) aspect = 1;
+  loaded.material_uv_aspects = std::move(aspects);
+}
+
 Result<LoadedScene> SceneBuilder::finish(const ReadOptions& options, const Context& context) {
   if (triangle_count() == 0) {
     const std::string why = defects.triangles_left_out == 0
@@ -260,7 +273,6 @@ Result<LoadedScene> SceneBuilder::finish(const ReadOptions& options, const Conte
   }
   sanitise_values();
   LoadedScene loaded;
-  loaded.uv_aspect = uv_aspect;
   Scene& scene = loaded.scene;
   scene.metres_per_unit = options.metres_per_unit;
   if (Status s = place_positions(scene); !s.ok()) return s;
@@ -269,6 +281,7 @@ Result<LoadedScene> SceneBuilder::finish(const ReadOptions& options, const Conte
   keep_used(scene);
   move_texcoords();
   place_materials(scene);
+  place_uv_aspects(loaded);
   if (options.load_textures && (options.unlit_textures || !illumination.empty())) {
     load_textures(scene, options.encoded_textures);
   }
