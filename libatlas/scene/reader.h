@@ -52,7 +52,11 @@ struct LoadedScene {
 // Positions are parsed in double precision. If the centre of the bounding box of the used vertices
 // is farther from 0 than the length of the box's diagonal, Scene::origin is that centre, rounded to
 // a multiple of a quarter of the diagonal's next larger power of two, and positions are stored
-// relative to it. Otherwise the origin is 0 and positions are the file's own, rounded to float.
+// relative to it. Otherwise the origin is 0 and positions are the file's own, rounded to float. If
+// rounding then moves used vertices by more than 1e-3 of the typical edge (the median of the
+// triangles' longest), and fewer of them with an origin near the median of the used vertices, that
+// is the origin, rounded likewise to a quarter of a power of two. What is moved so far all the same
+// is a defect.
 // Materials and objects without a triangle are not listed; the others are listed in the order of
 // first use.
 // Illumination is read from OBJ `v x y z r g b`; PLY red/green/blue, r/g/b or illuminance_r/g/b

@@ -177,7 +177,7 @@ class SceneBuilder {
   }
 
   void sanitise_values();
-  Status place_positions(Scene& scene) const;
+  Status place_positions(Scene& scene);
   void keep_used(Scene& scene);
   void move_texcoords();
   void place_normals(Scene& scene);
