@@ -207,10 +207,13 @@ void SceneBuilder::load_textures(Scene& scene, bool encoded) {
 }
 
 // Moves the materials into the scene. Their textures follow in load_textures().
-void SceneBuilder::place_materials(Scene& scene) {
+void SceneBuilder::place_materials(const ReadOptions& options, Scene& scene) {
   Losses losses;
   losses.add(not_read);
   for (const RawMaterial& m : materials) {
+    // The lines of an MTL and a glTF file say themselves which textures there are.
+    if (wants_rest && !options.load_textures && m.mtl_lines.empty() && !source)
+      losses.add("textures of materials", m.texture >= 0);
     scene.materials.push_back(m);
     scene.materials.back().texture = -1;
     if (wants_rest) continue;
@@ -253,7 +256,7 @@ Result<LoadedScene> SceneBuilder::finish(const ReadOptions& options, const Conte
   if (context.cancelled()) return Status::cancelled();
   keep_used(scene);
   move_texcoords();
-  place_materials(scene);
+  place_materials(options, scene);
   place_uv_aspects(loaded);
   if (options.load_textures && (options.unlit_textures || !illumination.empty())) {
     load_textures(scene, options.encoded_textures);

@@ -182,7 +182,7 @@ class SceneBuilder {
   void move_texcoords();
   void place_normals(Scene& scene);
   void place_uv_aspects(LoadedScene& loaded) const;
-  void place_materials(Scene& scene);
+  void place_materials(const ReadOptions& options, Scene& scene);
   void load_textures(Scene& scene, bool encoded);
   bool keep_encoded(RawTexture& raw, Scene& scene) const;
   Result<Image8> load_texture(const RawTexture& raw) const;
