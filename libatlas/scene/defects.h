@@ -15,19 +15,19 @@ namespace atlas {
 // every element parses, but some cannot be used; they are left out or replaced as said below,
 // and each is counted here.
 enum class DefectKind : std::uint8_t {
-  index_out_of_range,     // triangle left out: a corner names a vertex that does not exist
-  too_few_corners,        // face left out: fewer than three corners
-  bad_position_used,      // triangle left out: a corner's position is not a finite float
-  position_not_finite,    // vertex with a NaN, infinite or beyond-float coordinate
-  position_rounded,       // vertex moved by more than 1e-3 of the typical edge as it becomes floats
-  triangle_closed,        // triangle kept: corners that differ in double become equal as floats
-  polygon_too_large,      // concave polygon too large for ear clipping: cut as a fan
-  texcoord_out_of_range,  // triangle kept without texture coordinates: no such coordinate
-  texcoord_partial,       // triangle kept without texture coordinates: some corners lack one
-  texcoord_not_finite,    // texture coordinate replaced by (0, 0)
-  normal_out_of_range,    // triangle kept without normals: no such normal
-  normal_partial,         // triangle kept without normals: some corners lack one
-  normal_unusable,        // normal of length 0 or not finite: replaced by that of its triangles
+  index_out_of_range,       // triangle left out: a corner names a vertex that does not exist
+  too_few_corners,          // face left out: fewer than three corners
+  bad_position_used,        // triangle left out: a corner's position is not a finite float
+  position_not_finite,      // vertex with a NaN, infinite or beyond-float coordinate
+  position_rounded,         // vertex that rounding to floats moves by over 1e-3 of the typical edge
+  triangle_closed,          // triangle kept: corners that differ in double become equal as floats
+  polygon_too_large,        // concave polygon too large for ear clipping: cut as a fan
+  texcoord_out_of_range,    // triangle kept without texture coordinates: no such coordinate
+  texcoord_partial,         // triangle kept without texture coordinates: some corners lack one
+  texcoord_not_finite,      // texture coordinate replaced by (0, 0)
+  normal_out_of_range,      // triangle kept without normals: no such normal
+  normal_partial,           // triangle kept without normals: some corners lack one
+  normal_unusable,          // normal of length 0 or not finite: replaced by that of its triangles
   illumination_not_finite,  // not finite or beyond kMostLight (scene.h): value replaced by 0
   illumination_negative,    // value kept as it is
   illumination_missing,     // vertex without a value where others have one: 0 is used

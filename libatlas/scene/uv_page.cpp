@@ -46,7 +46,8 @@ std::int32_t page_number(std::string_view material) {
          material[material.size() - 1 - digits] <= '9')
     ++digits;
   std::string_view number = material.substr(material.size() - digits);
-  return take_number(number);
+  material.remove_suffix(digits);
+  return material.ends_with('.') ? -1 : take_number(number);  // "page1.001" is a copy of page1
 }
 
 }  // namespace
