@@ -209,6 +209,7 @@ Status run(const app::ExportCommand& command, app::Terminal& terminal) {
   ExportOptions options = command.options;
   options.charts.uv_aspect =
       command.uv_aspect.value_or(loaded->uv_aspect > 0 ? loaded->uv_aspect : 1);
+  if (!command.uv_aspect) options.charts.material_uv_aspects = loaded->material_uv_aspects;
   Result<ExportReport> report = export_world(
       *loaded, options, [&](const StageReport& stage) { terminal.line(stage_line(stage)); },
       context);

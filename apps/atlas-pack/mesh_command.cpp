@@ -4,6 +4,7 @@
 #include <bit>
 #include <cmath>
 #include <span>
+#include <unordered_map>
 #include <utility>
 
 #include "apps/atlas-pack/commands.h"
@@ -203,6 +204,33 @@ Result<FitResult> fit_charts(const PackCommand& c, std::span<const FitItem> item
   return fitted;
 }
 
+// Scales the uvs so that shapes on their pages are not squeezed.
+void widen_uvs(LoadedScene& loaded) {
+  Scene& scene = loaded.scene;
+  const std::vector<double>& aspects = loaded.material_uv_aspects;
+  const auto widened = [](double aspect, Vec2f uv) {
+    return Vec2f{static_cast<float>(aspect * uv.x), uv.y};
+  };
+  if (aspects.empty()) {
+    if (loaded.uv_aspect > 0)
+      for (Vec2f& uv : scene.texcoords) uv = widened(loaded.uv_aspect, uv);
+    return;
+  }
+  // A texcoord that several materials share has a copy for each.
+  std::vector<Vec2f> uvs;
+  std::vector<std::unordered_map<std::uint32_t, std::uint32_t>> copies(aspects.size());
+  for (std::size_t k = 0; k < scene.texcoord_indices.size(); ++k) {
+    std::uint32_t& index = scene.texcoord_indices[k];
+    if (index == Scene::kNoTexcoord) continue;
+    const std::uint32_t material = scene.triangle_material[k / 3];
+    const auto [at, is_new] =
+        copies[material].try_emplace(index, static_cast<std::uint32_t>(uvs.size()));
+    if (is_new) uvs.push_back(widened(aspects[material], scene.texcoords[index]));
+    index = at->second;
+  }
+  scene.texcoords = std::move(uvs);
+}
+
 }  // namespace
 
 Result<PackedAtlas> run_mesh(const PackCommand& c, const Context& context) {
@@ -219,8 +247,8 @@ Result<PackedAtlas> run_mesh(const PackCommand& c, const Context& context) {
   Result<LoadedScene> loaded = read_scene(c.input, read, context);
   if (!loaded.ok()) return loaded.status();
   Scene& scene = loaded->scene;
-  const double aspect = c.uv_aspect.value_or(loaded->uv_aspect > 0 ? loaded->uv_aspect : 1);
-  for (Vec2f& uv : scene.texcoords) uv.x = static_cast<float>(aspect * uv.x);
+  if (c.uv_aspect) loaded->uv_aspect = *c.uv_aspect, loaded->material_uv_aspects.clear();
+  widen_uvs(*loaded);
   for (const auto& file : loaded->files)
     if (Status s = check_output(material_file(c.output), {file}); !s.ok()) return s;
   for (const std::string& line : loaded->defects.lines()) context.say("defect: " + line);

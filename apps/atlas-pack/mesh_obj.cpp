@@ -119,12 +119,14 @@ std::string to_obj(const RepackedMesh& mesh, const std::string& material_file) {
   const Scene& s = mesh.scene;
   TextBuffer text;
   text.text("# repacked by atlas-pack\n");
-  // The shape of the textures, for readers and, of a single page, for libatlas itself.
+  // The shape of the textures, for readers and for libatlas itself.
   const std::vector<Extent>& pages = mesh.fit.pages;
   if (pages.size() == 1) text.text("# " + uv_page_text(pages[0].width, pages[0].height) + "\n");
-  for (std::size_t page = 0; page < pages.size(); ++page)
-    text.text(
-        fmt::format("# page_{}: {} x {} texels\n", page, pages[page].width, pages[page].height));
+  for (std::size_t page = 0; page < pages.size(); ++page) {
+    const auto [width, height] = pages[page];
+    text.text(fmt::format("# page_{}: {} x {} texels\n", page, width, height));
+    if (pages.size() > 1) text.text("# " + uv_page_text(page, width, height) + "\n");
+  }
   text.text(fmt::format("mtllib {}\n", material_file));
   for (const Vec3f& p : s.positions) {
     text.text("v ");

@@ -44,6 +44,9 @@ struct ChartOptions {
   bool keep_uv_charts = false;
   // Width / height of the page that the given texcoords run over from 0 to 1; 1e-6..1e6.
   double uv_aspect = 1;
+  // The same, one for each id of MeshView::materials, if their pages differ in shape. Triangles of
+  // other ids, and all if this is empty, have uv_aspect.
+  std::vector<double> material_uv_aspects = {};
   ChartPreset preset = ChartPreset::standard;
   // A chart so large that its smallest rectangle decides the page's size is cut across its limbs
   // until the pieces fill this share of their rectangles; so are the most wasteful charts where all

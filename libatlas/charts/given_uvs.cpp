@@ -65,6 +65,7 @@ class GivenChart {
   std::size_t take_uvs() {
     uvs_.assign(chart_.positions.size(), Vec2d{});
     const std::span<const std::uint32_t> triangles = chart_.triangles();
+    const double aspect = page_aspect(triangles.front());
     Vec2f first;
     std::size_t missing = 0;
     for (std::size_t i = 0; i < triangles.size(); ++i) {
@@ -78,11 +79,18 @@ class GivenChart {
         }
         const Vec2f uv = mesh_.texcoords[index];
         if (i == 0 && c == 0) first = uv;
-        uvs_[chart_.corners[i][c]] = {input_.options.uv_aspect * (double(uv.x) - first.x),
-                                      double(uv.y) - first.y};
+        uvs_[chart_.corners[i][c]] = {aspect * (double(uv.x) - first.x), double(uv.y) - first.y};
       }
     }
     return missing;
+  }
+
+  // Returns width / height of the page of the chart with this triangle. No page is divided among
+  // charts of several shapes, so all of its triangles have that page.
+  double page_aspect(std::uint32_t triangle) const {
+    const std::vector<double>& aspects = input_.options.material_uv_aspects;
+    const std::uint32_t material = mesh_.materials.empty() ? 0 : mesh_.materials[triangle];
+    return material < aspects.size() ? aspects[material] : input_.options.uv_aspect;
   }
 
   // Returns the surface area, times density squared.

@@ -268,9 +268,11 @@ Status check_options(const ChartOptions& options) {
     return must("crease_degrees", options.crease_degrees, "be above 0 degrees and at most 180");
   if (!(options.min_fill >= 0 && options.min_fill < 1))
     return must("min_fill", options.min_fill, "be at least 0 (never cut for it) and below 1");
+  constexpr const char* kAspect = "be a page's width / height within 1e-6..1e6 (1: square)";
   if (!(options.uv_aspect >= 1e-6 && options.uv_aspect <= 1e6))
-    return must("uv_aspect", options.uv_aspect,
-                "be a page's width / height within 1e-6..1e6 (1: square)");
+    return must("uv_aspect", options.uv_aspect, kAspect);
+  for (const double aspect : options.material_uv_aspects)
+    if (!(aspect >= 1e-6 && aspect <= 1e6)) return must("material_uv_aspects", aspect, kAspect);
   return {};
 }
 

@@ -13,6 +13,7 @@
 #include "libatlas/pipeline/assemble_world.h"
 #include "libatlas/pipeline/draw_once.h"
 #include "libatlas/pipeline/export_world.h"
+#include "libatlas/scene/uv_page.h"
 #include "libatlas/sheets/one_sided.h"
 
 namespace atlas {
@@ -32,6 +33,10 @@ World make_world(const ExportToWrite& made, const WorldMesh& mesh, ExportReport&
                                  : drawn_twice(placed, mesh.uv_indices, world.uvs, context);
     report.texels_drawn_twice = drawn.after;
     world.info.push_back(plain_pages_text(made.layout.pages));
+  } else {
+    for (std::size_t p = 0; p < made.layout.pages.size(); ++p)
+      world.info.push_back(
+          uv_page_text(p, made.layout.pages[p].width, made.layout.pages[p].height));
   }
   world.up = options.up;
   world.title = options.target.stem().string();

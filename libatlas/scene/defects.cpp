@@ -17,6 +17,12 @@ constexpr Names kNames[] = {
     {"too_few_corners", "faces left out: fewer than three corners"},
     {"bad_position_used", "triangles left out: a corner's position is not finite"},
     {"position_not_finite", "vertices whose position is not a finite number"},
+    {"position_rounded",
+     "vertices that rounding to single precision moves by more than a thousandth of the typical "
+     "edge, since the scene lies in parts far from each other (remove stray parts, or export the "
+     "parts one by one)"},
+    {"triangle_closed",
+     "triangles that rounding to single precision closes: corners that differ become one"},
     {"polygon_too_large", "very large concave polygons cut as fans"},
     {"texcoord_out_of_range",
      "triangles without texture: a corner names a texture coordinate that does not exist"},

@@ -19,6 +19,8 @@ enum class DefectKind : std::uint8_t {
   too_few_corners,          // face left out: fewer than three corners
   bad_position_used,        // triangle left out: a corner's position is not a finite float
   position_not_finite,      // vertex with a NaN, infinite or beyond-float coordinate
+  position_rounded,         // vertex that rounding to floats moves by over 1e-3 of the typical edge
+  triangle_closed,          // triangle kept: corners that differ in double become equal as floats
   polygon_too_large,        // concave polygon too large for ear clipping: cut as a fan
   texcoord_out_of_range,    // triangle kept without texture coordinates: no such coordinate
   texcoord_partial,         // triangle kept without texture coordinates: some corners lack one

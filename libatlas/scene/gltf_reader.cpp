@@ -15,7 +15,6 @@
 #include "libatlas/scene/gltf_pose.h"
 #include "libatlas/scene/gltf_sizes.h"
 #include "libatlas/scene/gltf_source.h"
-#include "libatlas/scene/uv_page.h"
 
 namespace atlas {
 namespace fs = std::filesystem;
@@ -371,14 +370,12 @@ class GltfParser {
   std::size_t coloured_ = 0;
 };
 
-// Returns what the lines about the file say of the page of its uvs.
-double uv_aspect_in(const tinygltf::Asset& asset) {
-  if (!asset.extras.IsObject() || !asset.extras.Get("info").IsArray()) return 0;
+// Takes what the lines about the file say of the pages of its uvs.
+void take_uv_pages(const tinygltf::Asset& asset, UvPages& pages) {
+  if (!asset.extras.IsObject() || !asset.extras.Get("info").IsArray()) return;
   for (const tinygltf::Value& line : asset.extras.Get("info").Get<tinygltf::Value::Array>()) {
-    if (!line.IsString()) continue;
-    if (const double aspect = uv_aspect_of(line.Get<std::string>()); aspect > 0) return aspect;
+    if (line.IsString()) pages.take(line.Get<std::string>());
   }
-  return 0;
 }
 
 }  // namespace
@@ -392,7 +389,7 @@ Status read_gltf(const fs::path& path, SceneBuilder& builder, const Context& con
   if (Status s = builder.wants_rest ? take_data_out(path, *source) : Status(); !s.ok()) return s;
   if (builder.wants_rest) builder.source = source;
   builder.not_read = gltf_not_read(source->model);
-  builder.uv_aspect = uv_aspect_in(source->model.asset);
+  take_uv_pages(source->model.asset, builder.uv_pages);
   return GltfParser(source->model, builder, context).run();
 }
 

@@ -12,7 +12,6 @@
 #include "libatlas/scene/formats.h"
 #include "libatlas/scene/mtl_names.h"
 #include "libatlas/scene/obj_chunk.h"
-#include "libatlas/scene/uv_page.h"
 
 namespace atlas {
 namespace fs = std::filesystem;
@@ -276,15 +275,14 @@ Status check_tail(const fs::path& path, const FileBytes& bytes, const ObjChunk& 
                   path.string(), lines)};
 }
 
-// Returns what the comments at the head of the file say of the page of its uvs.
-double uv_aspect_in_head(const FileBytes& bytes) {
+// Takes what the comments at the head of the file say of the pages of its uvs.
+void take_uv_pages(const FileBytes& bytes, UvPages& pages) {
   std::string_view text = bytes.text();
   while (text.starts_with('#')) {
     const std::size_t end = std::min(text.find('\n'), text.size() - 1);
-    if (const double aspect = uv_aspect_of(text.substr(0, end)); aspect > 0) return aspect;
+    pages.take(text.substr(0, end));
     text.remove_prefix(end + 1);
   }
-  return 0;
 }
 
 }  // namespace
@@ -292,7 +290,7 @@ double uv_aspect_in_head(const FileBytes& bytes) {
 Status read_obj(const fs::path& path, SceneBuilder& builder, const Context& context) {
   auto bytes = read_text_bytes(path);
   if (!bytes.ok()) return bytes.status();
-  builder.uv_aspect = uv_aspect_in_head(*bytes);
+  take_uv_pages(*bytes, builder.uv_pages);
   const std::vector<const char*> borders = cut(*bytes);
   std::vector<ObjChunk> chunks(borders.size() - 1);
   parallel_for(context, chunks.size(), 1, [&](std::size_t begin, std::size_t end) {

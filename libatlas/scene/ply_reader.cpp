@@ -2,12 +2,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
 #include <cstring>
 
 #include "libatlas/scene/formats.h"
 #include "libatlas/scene/ply_header.h"
+#include "libatlas/scene/ply_losses.h"
 #include "libatlas/scene/text_scanner.h"
 
 namespace atlas {
@@ -226,6 +228,10 @@ class PlyParser {
       scale[c] = colour_scale(element_->properties[rgb[c]].type);
     }
     begin();
+    std::vector<int> read;
+    for (const std::vector<int>& group : {xyz, rgb, uv, normal})
+      read.insert(read.end(), group.begin(), group.end());
+    PlyLosses losses(*element_, read, "vertices");
     std::vector<std::string> bad;  // places of the first unusable positions
     builder_.positions.reserve(element_->count);
     builder_.illumination.reserve(rgb.empty() ? 0 : element_->count);
@@ -234,6 +240,7 @@ class PlyParser {
     for (; index_ < element_->count; ++index_) {
       if (Status s = read_element(context); !s.ok()) return s;
       const auto& s = scalars_;
+      losses.take(s);
       builder_.positions.push_back({s[xyz[0]], s[xyz[1]], s[xyz[2]]});
       if (!rgb.empty()) {
         builder_.illumination.push_back({float(s[rgb[0]] * scale[0]), float(s[rgb[1]] * scale[1]),
@@ -247,6 +254,7 @@ class PlyParser {
         bad.push_back(place());
       }
     }
+    count(losses);
     vertex_uvs_ = !uv.empty();
     auto next_bad = bad.begin();
     builder_.check_positions([&](std::size_t) { return *next_bad++; });
@@ -283,10 +291,13 @@ class PlyParser {
     }
     const int wedge = element_->find("texcoord"), number = element_->find("texnumber");
     begin();
+    PlyLosses losses(*element_,
+                     std::array{list, wedge, header_.texture_files.empty() ? -1 : number}, "faces");
     builder_.reserve_triangles(element_->count, vertex_uvs_ || wedge >= 0);
     std::vector<std::int64_t> corners, uvs;
     for (; index_ < element_->count; ++index_) {
       if (Status s = read_element(context); !s.ok()) return s;
+      losses.take(scalars_);
       corners.clear();
       for (const double v : lists_[list]) corners.push_back(to_index(v));
       uvs.clear();
@@ -298,7 +309,12 @@ class PlyParser {
       builder_.material = number < 0 ? 0 : material_of(number);
       builder_.add_face({corners, uvs, normals_of(corners)}, [&] { return place(); });
     }
+    count(losses);
     return {};
+  }
+
+  void count(const PlyLosses& losses) {
+    if (builder_.wants_rest) losses.add_to(builder_.not_read);
   }
 
   // Returns the material of the current face, whose texture number is property `number`. Programs

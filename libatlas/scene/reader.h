@@ -42,9 +42,12 @@ struct LoadedScene {
   DefectReport defects = {};  // what was left out or replaced
   // Files that were read besides the scene's own: material libraries, buffers.
   std::vector<std::filesystem::path> files = {};
-  // Width / height of the page that the uvs were made for, if an OBJ or a glTF says so as libatlas
-  // writes it (scene/uv_page.h); else 0.
+  // Width / height of the pages that the uvs were made for, if an OBJ, glTF or VRML file says so as
+  // libatlas writes it (scene/uv_page.h) and all pages have one shape; else 0.
   double uv_aspect = 0;
+  // The same, one per material of the scene, if the pages differ in shape (then 1 for a material of
+  // which the file says nothing); else empty. For ChartOptions::material_uv_aspects.
+  std::vector<double> material_uv_aspects = {};
 };
 
 // Reads the scene at `path`; the extension (.obj .ply .off .stl .gltf .glb .wrl .wrz, any case)
@@ -53,7 +56,11 @@ struct LoadedScene {
 // Positions are parsed in double precision. If the centre of the bounding box of the used vertices
 // is farther from 0 than the length of the box's diagonal, Scene::origin is that centre, rounded to
 // a multiple of a quarter of the diagonal's next larger power of two, and positions are stored
-// relative to it. Otherwise the origin is 0 and positions are the file's own, rounded to float.
+// relative to it. Otherwise the origin is 0 and positions are the file's own, rounded to float. If
+// rounding then moves used vertices by more than 1e-3 of the typical edge (the median of the
+// triangles' longest), and fewer of them with an origin near the median of the used vertices, that
+// is the origin, rounded likewise to a quarter of a power of two. What is moved so far all the same
+// is a defect.
 // Materials and objects without a triangle are not listed; the others are listed in the order of
 // first use.
 // Illumination is read from OBJ `v x y z r g b`; PLY red/green/blue, r/g/b or illuminance_r/g/b

@@ -15,6 +15,7 @@
 #include "libatlas/scene/mtl_names.h"
 #include "libatlas/scene/polygon.h"
 #include "libatlas/scene/reader.h"
+#include "libatlas/scene/uv_page.h"
 
 namespace atlas {
 
@@ -75,7 +76,7 @@ class SceneBuilder {
   NamedFiles named_files;                    // finds material libraries and their textures
   LossCounts not_read;                       // Scene::not_read, without the materials' MTL lines
   std::vector<std::filesystem::path> files;  // LoadedScene::files
-  double uv_aspect = 0;                      // LoadedScene::uv_aspect
+  UvPages uv_pages;                          // what the file says of the pages of its uvs
 
   // What the next faces belong to.
   std::uint32_t material = 0, object = 0;
@@ -178,11 +179,12 @@ class SceneBuilder {
 
   void sanitise_values();
   void decode_colours();
-  Status place_positions(Scene& scene) const;
+  Status place_positions(Scene& scene);
   void keep_used(Scene& scene);
   void move_texcoords();
   void place_normals(Scene& scene);
-  void place_materials(Scene& scene);
+  void place_uv_aspects(LoadedScene& loaded) const;
+  void place_materials(const ReadOptions& options, Scene& scene);
   void load_textures(Scene& scene, bool encoded);
   bool keep_encoded(RawTexture& raw, Scene& scene) const;
   Result<Image8> load_texture(const RawTexture& raw) const;

@@ -9,15 +9,45 @@ namespace atlas {
 namespace {
 
 constexpr std::string_view kSquare = "uvs of a square page", kPage = "uvs of a page of ",
-                           kTimes = " x ";
+                           kNumbered = "uvs of page ", kTimes = " x ";
 
-// Reads a whole number from the start of the text, and removes it. Returns 0 if there is none.
+// Removes the beginning if the text has it, and returns whether it had.
+bool take_text(std::string_view& text, std::string_view beginning) {
+  if (!text.starts_with(beginning)) return false;
+  text.remove_prefix(beginning.size());
+  return true;
+}
+
+// Reads a whole number from the start of the text, and removes it. Returns -1 if there is none.
 std::int32_t take_number(std::string_view& text) {
   std::int32_t number = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
-  if (error != std::errc()) return 0;
+  if (error != std::errc()) return -1;
   text.remove_prefix(static_cast<std::size_t>(end - text.data()));
   return number;
+}
+
+// Reads width and height from the start of the text. Returns their ratio, or 0 if there is none.
+double aspect_at(std::string_view text) {
+  const std::int32_t width = take_number(text);
+  if (width < 1 || !take_text(text, kTimes)) return 0;
+  const std::int32_t height = take_number(text);
+  // Longer pages than these do not exist, and charts of other ratios would be refused.
+  constexpr std::int32_t kLongest = 1 << 17;
+  return height < 1 || std::max(width, height) > kLongest ? 0 : double(width) / height;
+}
+
+// Returns the number of the page that a material's name ends in, or -1.
+std::int32_t page_number(std::string_view material) {
+  for (const std::string_view end : {".png", "_one_sided"})
+    if (material.ends_with(end)) material.remove_suffix(end.size());
+  std::size_t digits = 0;
+  while (digits < material.size() && material[material.size() - 1 - digits] >= '0' &&
+         material[material.size() - 1 - digits] <= '9')
+    ++digits;
+  std::string_view number = material.substr(material.size() - digits);
+  material.remove_suffix(digits);
+  return material.ends_with('.') ? -1 : take_number(number);  // "page1.001" is a copy of page1
 }
 
 }  // namespace
@@ -28,18 +58,33 @@ std::string uv_page_text(std::int32_t width, std::int32_t height) {
                                        width, kTimes, height);
 }
 
-double uv_aspect_of(std::string_view line) {
-  while (!line.empty() && (line[0] == '#' || line[0] == ' ')) line.remove_prefix(1);
-  if (line.starts_with(kSquare)) return 1;
-  if (!line.starts_with(kPage)) return 0;
-  line.remove_prefix(kPage.size());
-  const std::int32_t width = take_number(line);
-  if (width < 1 || !line.starts_with(kTimes)) return 0;
-  line.remove_prefix(kTimes.size());
-  const std::int32_t height = take_number(line);
-  // Longer pages than these do not exist, and charts of other ratios would be refused.
-  constexpr std::int32_t kLongest = 1 << 17;
-  return height < 1 || std::max(width, height) > kLongest ? 0 : double(width) / height;
+std::string uv_page_text(std::size_t page, std::int32_t width, std::int32_t height) {
+  return fmt::format("{}{}: {}{}{} texels", kNumbered, page, width, kTimes, height);
+}
+
+void UvPages::take(std::string_view line) {
+  while (!line.empty() && (line[0] == '#' || line[0] == ' ' || line[0] == '"'))
+    line.remove_prefix(1);
+  double aspect = 0;
+  if (take_text(line, kSquare)) {
+    aspect = 1;
+  } else if (take_text(line, kPage)) {
+    aspect = aspect_at(line);
+  } else if (take_text(line, kNumbered)) {
+    const std::int32_t page = take_number(line);
+    if (page < 0 || !take_text(line, ": ")) return;
+    if (aspect = aspect_at(line); aspect > 0)
+      by_number_.try_emplace(static_cast<std::uint32_t>(page), aspect);
+    return;
+  }
+  if (single_ == 0) single_ = aspect;
+}
+
+double UvPages::aspect_of(std::string_view material) const {
+  if (by_number_.empty()) return single_;
+  const std::int32_t page = page_number(material);
+  const auto found = page < 0 ? by_number_.end() : by_number_.find(std::uint32_t(page));
+  return found == by_number_.end() ? single_ : found->second;
 }
 
 }  // namespace atlas

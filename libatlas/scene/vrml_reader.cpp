@@ -115,14 +115,15 @@ class VrmlParser : VrmlScanner {
     return fmt::format("{}:{}: {}", builder_.file, line_of(at), type);
   }
 
-  // Reads the exporter's note of an origin for which single-precision coordinates would not
-  // suffice.
+  // Reads the exporter's notes of the pages' shapes, and of an origin for which single-precision
+  // coordinates would not suffice.
   void world_info() {
     constexpr std::string_view kNote = "\"origin ";
     fields([&](std::string_view name) {
       if (name != "info" || peek() != "[") return false;
       next();
       for (std::string_view token = next(); token != "]" && !token.empty(); token = next()) {
+        builder_.uv_pages.take(token);
         if (!token.starts_with(kNote)) continue;
         const char* p = token.data() + kNote.size();
         glm::dvec3 origin(0);

@@ -1,9 +1,13 @@
 // What exports write is read again as it was.
 #include <gtest/gtest.h>
 
+#include <utility>
+#include <vector>
+
 #include "libatlas/pipeline/export_world.h"
 #include "libatlas/scene/check_scene.h"
 #include "libatlas/scene/reader.h"
+#include "tests/pipeline/lit_scene.h"
 #include "tests/scene/temp_folder.h"
 #include "tests/support/shapes.h"
 
@@ -37,6 +41,65 @@ TEST(ReadAgain, ChartsOfAPageThatIsNotSquareAreReadAgain) {
     ASSERT_TRUE(second.ok()) << second.status().message();
     EXPECT_NEAR(second->distortion.stretch_l2, first->distortion.stretch_l2, 1e-5);
     options.charts.uv_aspect = 1;
+  }
+}
+
+ExportReport exported(const LoadedScene& scene, const ExportOptions& options) {
+  auto report = export_world(scene, options, {}, {});
+  EXPECT_TRUE(report.ok()) << report.status().message();
+  return report.ok() ? std::move(*report) : ExportReport{};
+}
+
+// Exports light, reads the file again with its charts, and returns both reports.
+std::pair<ExportReport, ExportReport> baked_and_kept(const LoadedScene& scene,
+                                                     ExportOptions options,
+                                                     std::vector<double>* aspects) {
+  ExportReport baked = exported(scene, options);
+  const auto again = read_scene(options.target, {}, {});
+  EXPECT_TRUE(again.ok()) << again.status().message();
+  options.charts_only = options.charts.keep_uv_charts = true;
+  options.charts.uv_aspect = again->uv_aspect > 0 ? again->uv_aspect : 1;
+  options.charts.material_uv_aspects = again->material_uv_aspects;
+  if (aspects) *aspects = again->material_uv_aspects;
+  options.target.replace_filename("kept.obj");
+  return {std::move(baked), exported(*again, options)};
+}
+
+// Baked worlds say the shape of their pages, too.
+TEST(ReadAgain, ChartsOfBakedPagesAreReadAgain) {
+  const TempFolder folder;
+  ExportOptions options;
+  options.simplify = false;
+  options.threshold = 0;
+  options.texel_metres = 0.01;
+  const LoadedScene one = lit_scene(grid(9, 9, 2, 1));
+  for (const char* name : {"a.obj", "a.glb", "a.gltf", "a.wrl", "a.wrz"}) {
+    options.target = folder / name;
+    const auto [baked, kept] = baked_and_kept(one, options, nullptr);
+    ASSERT_EQ(baked.pages.size(), 1u);
+    EXPECT_NE(baked.pages[0].width, baked.pages[0].height);
+    EXPECT_NEAR(kept.distortion.stretch_l2, baked.distortion.stretch_l2, 1e-3) << name;
+  }
+}
+
+TEST(ReadAgain, BakedPagesMayDifferInShape) {
+  const TempFolder folder;
+  ExportOptions options;
+  options.simplify = false;
+  options.threshold = 0;
+  options.atlas_size = 64;
+  options.texel_metres = 0.003;
+  const LoadedScene scene =
+      lit_scene(together(grid(4, 4, 0.5, 0.5), moved(grid(4, 4, 0.5, 0.1), 1, {0, 0, 3})));
+  for (const char* name : {"a.obj", "a.glb", "a.wrl"}) {
+    options.target = folder / name;
+    std::vector<double> aspects;
+    const auto [baked, kept] = baked_and_kept(scene, options, &aspects);
+    ASSERT_EQ(aspects.size(), baked.pages.size()) << name;
+    for (std::size_t p = 0; p < aspects.size(); ++p)
+      EXPECT_EQ(aspects[p], double(baked.pages[p].width) / baked.pages[p].height) << name;
+    EXPECT_EQ(kept.repairs.kept_charts, kept.charts.size());
+    EXPECT_NEAR(kept.distortion.stretch_999, 1, 1e-3) << name;
   }
 }
 

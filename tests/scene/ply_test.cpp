@@ -382,6 +382,33 @@ TEST(Ply, TextureNumbersWithoutTextures) {
   EXPECT_TRUE(loaded->defects.empty());
 }
 
+// What a scene has no arrays for is counted if the scene is to be kept.
+TEST(Ply, CountsPropertiesThatASceneCannotHold) {
+  const TempFolder folder;
+  const auto path = folder.write(
+      "t.ply",
+      "ply\nformat ascii 1.0\ncomment TextureFile a.png\nelement vertex 3\nproperty float x\n"
+      "property float y\nproperty float z\nproperty float nx\nproperty float ny\n"
+      "property float nz\nproperty uchar red\nproperty uchar green\nproperty uchar blue\n"
+      "property uchar alpha\nproperty float quality\nelement face 2\n"
+      "property list uchar int vertex_indices\nproperty list uchar float texcoord\n"
+      "property int texnumber\nproperty uchar red\nproperty float alpha\nend_header\n"
+      "0 0 0 0 0 1 9 9 9 255 1\n1 0 0 0 0 1 9 9 9 254 2\n0 1 0 0 0 1 9 9 9 0 3\n"
+      "3 0 1 2 6 0 0 1 0 0 1 0 7 1\n3 0 1 2 6 0 0 1 0 0 1 0 8 1\n");
+  ReadOptions options;
+  options.keep_scene = true;
+  options.load_textures = false;
+  const auto kept = read_scene(path, options, {});
+  ASSERT_TRUE(kept.ok()) << kept.status().message();
+  EXPECT_EQ(kept->scene.not_read, (LossCounts{{"textures of materials", 1},
+                                              {"values of faces: red", 2},
+                                              {"values of vertices: alpha", 2},
+                                              {"values of vertices: quality", 3}}));
+  const auto read = read_scene(path, {}, {});
+  ASSERT_TRUE(read.ok()) << read.status().message();
+  EXPECT_EQ(read->scene.not_read, LossCounts{});
+}
+
 INSTANTIATE_TEST_SUITE_P(All, PlyFormats,
                          ::testing::Values("ascii", "binary_little_endian", "binary_big_endian"));
 

@@ -15,6 +15,12 @@ using test::kSquare;
 using test::load_glb;
 using test::TempFolder;
 
+double uv_aspect_of(std::string_view line) {
+  UvPages pages;
+  pages.take(line);
+  return pages.aspect_of("page0");
+}
+
 TEST(UvPage, TextsAreUnderstood) {
   EXPECT_EQ(uv_aspect_of(uv_page_text(2048, 512)), 4);
   EXPECT_EQ(uv_aspect_of("# " + uv_page_text(300, 1200)), 0.25);
@@ -24,8 +30,22 @@ TEST(UvPage, TextsAreUnderstood) {
         "uvs of a page of ", "uvs of a page of 5", "uvs of a page of 5 x ", "uvs of a page of 5x5",
         "uvs of a page of 0 x 5 texels", "uvs of a page of 5 x -5 texels",
         "uvs of a page of 99999999999 x 5 texels", "uvs of a page of 2000000000 x 1 texels",
-        "the uvs of a page of 5 x 5 texels"})
+        "the uvs of a page of 5 x 5 texels", "uvs of page 0", "uvs of page -1: 8 x 2 texels",
+        "uvs of page : 8 x 2 texels", "uvs of page 0: 8 x 0 texels", "uvs of page 1: 8 x 2 texels"})
     EXPECT_EQ(uv_aspect_of(other), 0) << other;
+}
+
+TEST(UvPage, SeveralPagesAreFoundByTheNamesOfMaterials) {
+  UvPages pages;
+  pages.take("# " + uv_page_text(0, 64, 32));
+  pages.take("\"" + uv_page_text(1, 32, 64) + "\"");
+  pages.take(uv_page_text(12, 64, 16));
+  pages.take(uv_page_text(12, 64, 64));
+  EXPECT_EQ(pages.aspect_of("page0"), 2);
+  EXPECT_EQ(pages.aspect_of("page1_one_sided"), 0.5);
+  EXPECT_EQ(pages.aspect_of("scene_12.png"), 4);
+  for (const char* other : {"", "page", "page2", "page99999999999", "1page", "page1.001"})
+    EXPECT_EQ(pages.aspect_of(other), 0) << other;
 }
 
 TEST(UvPage, IsReadFromTheHeadOfAnObj) {
@@ -41,6 +61,25 @@ TEST(UvPage, IsReadFromTheHeadOfAnObj) {
   EXPECT_EQ(aspect("# name\r\n" + line + "\r\n" + triangle), 4);
   EXPECT_EQ(aspect(triangle), 0);
   EXPECT_EQ(aspect("# name\n" + triangle + line), 0) << "not at the head";
+}
+
+TEST(UvPage, DiffersBetweenMaterials) {
+  const TempFolder folder;
+  const auto read = [&](const std::string& head) {
+    auto loaded = read_scene(
+        folder.write("scene.obj", head + "v 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl page1\nf 1 2 3\n"
+                                         "usemtl page0\nf 3 2 1\nusemtl wood\nf 2 3 1\n"),
+        {}, {});
+    EXPECT_TRUE(loaded.ok()) << loaded.status().message();
+    return std::move(*loaded);
+  };
+  const std::string first = "# " + uv_page_text(0, 64, 32) + "\n";
+  const LoadedScene unlike = read(first + "# " + uv_page_text(1, 32, 64) + "\n");
+  EXPECT_EQ(unlike.uv_aspect, 0);
+  EXPECT_EQ(unlike.material_uv_aspects, (std::vector<double>{0.5, 2, 1}));
+  const LoadedScene alike = read("# " + uv_page_text(40, 10) + "\n");
+  EXPECT_EQ(alike.uv_aspect, 4);
+  EXPECT_TRUE(alike.material_uv_aspects.empty());
 }
 
 TEST(UvPage, IsReadFromTheExtrasOfAGltf) {

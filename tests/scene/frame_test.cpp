@@ -1,0 +1,113 @@
+// The origin that positions are stored relative to.
+#include "libatlas/scene/frame.h"
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdio>
+#include <string>
+#include <utility>
+
+#include "libatlas/scene/reader.h"
+#include "tests/scene/temp_folder.h"
+
+namespace atlas {
+namespace {
+
+using test::TempFolder;
+
+constexpr int kSide = 21;
+constexpr double kStep = 0.25;
+
+// Returns an OBJ of a bent sheet near the point, with `rest` behind its vertices and faces.
+std::string sheet(const Vec3d& at, const std::string& rest) {
+  std::string text;
+  for (int y = 0; y < kSide; ++y)
+    for (int x = 0; x < kSide; ++x)
+      text +=
+          fmt::format("v {} {} {}\n", at.x + kStep * x, at.y + kStep * y, at.z + std::sin(0.3 * y));
+  for (int y = 0; y + 1 < kSide; ++y) {
+    for (int x = 0; x + 1 < kSide; ++x) {
+      const int v = 1 + y * kSide + x;
+      text += fmt::format("f {} {} {}\nf {} {} {}\n", v, v + 1, v + kSide, v + 1, v + kSide + 1,
+                          v + kSide);
+    }
+  }
+  return text + rest;
+}
+
+LoadedScene load(const TempFolder& folder, const std::string& text) {
+  auto loaded = read_scene(folder.write("scene.obj", text), {}, {});
+  EXPECT_TRUE(loaded.ok()) << loaded.status().message();
+  return std::move(*loaded);
+}
+
+// Expects the sheet's grid to be exact.
+void expect_exact(const LoadedScene& loaded, const Vec3d& at) {
+  const Vec3d& origin = loaded.scene.origin;
+  for (int i = 0; i < kSide * kSide; ++i) {
+    const Vec3f& p = loaded.scene.positions[i];
+    ASSERT_EQ(origin.x + p.x, at.x + kStep * (i % kSide)) << i;
+    ASSERT_EQ(origin.y + p.y, at.y + kStep * (i / kSide)) << i;
+  }
+}
+
+const std::string kSpeck = "v 0 0 0\nv 0.1 0 0\nv 0 0.1 0\nf -3 -2 -1\n";
+
+TEST(Frame, AStrayTriangleDoesNotRoundTheScene) {
+  const TempFolder folder;
+  const Vec3d at{500000, 4.6e6, 120};
+  for (const std::string& stray : {kSpeck, std::string("v 0 0 0\nf -1 1 2\n")}) {
+    const LoadedScene loaded = load(folder, sheet(at, stray));
+    expect_exact(loaded, at);
+    EXPECT_LE(loaded.defects.count(DefectKind::position_rounded), 3u);
+    const double y = loaded.scene.origin.y;
+    EXPECT_EQ(y, std::round(y / 0.25) * 0.25);
+  }
+}
+
+// Farther out than floats of the whole extent could hold even the sheet's place.
+TEST(Frame, StrayTrianglesMayLieAnywhere) {
+  const TempFolder folder;
+  for (const char* far : {"1e9", "-1e20", "1e30"}) {
+    const std::string rest = fmt::format("v {0} 0 0\nv {0} 1 0\nv {0} 0 {0}\nf -3 -2 -1\n", far);
+    expect_exact(load(folder, sheet({3, 4, 5}, rest)), {3, 4, 5});
+  }
+}
+
+TEST(Frame, ExactScenesKeepTheirOrigin) {
+  const TempFolder folder;
+  const LoadedScene near = load(folder, sheet({0, 0, 0}, ""));
+  EXPECT_EQ(near.scene.origin, Vec3d{});
+  EXPECT_TRUE(near.defects.empty());
+  // The stray triangle costs the sheet at most 2^-20 of an edge here.
+  const LoadedScene stray =
+      load(folder, sheet({3, 4, 5}, "v 0 0 0\nv 64 0 0\nv 0 64 0\nf -3 -2 -1\n"));
+  EXPECT_EQ(stray.scene.origin, Vec3d{});
+  EXPECT_TRUE(stray.defects.empty());
+}
+
+// Two equal parts so far apart that no origin serves both.
+TEST(Frame, WhatRoundingLosesIsADefect) {
+  const TempFolder folder;
+  const std::string second = sheet({1e9 + 0.125, 0, 0}, "");
+  std::string relative;
+  const int count = kSide * kSide;
+  for (std::size_t begin = 0; begin < second.size();) {
+    const std::size_t end = second.find('\n', begin) + 1;
+    std::string line = second.substr(begin, end - begin);
+    int a = 0, b = 0, c = 0;
+    if (std::sscanf(line.c_str(), "f %d %d %d", &a, &b, &c) == 3)
+      line = fmt::format("f {} {} {}\n", a - count - 1, b - count - 1, c - count - 1);
+    relative += line;
+    begin = end;
+  }
+  const LoadedScene loaded = load(folder, sheet({0, 0, 0}, relative));
+  EXPECT_EQ(loaded.defects.count(DefectKind::position_rounded), std::uint64_t(count));
+  EXPECT_EQ(loaded.defects.count(DefectKind::triangle_closed), 800u);
+  EXPECT_NE(loaded.defects.lines()[0].find("moves by more than a thousandth"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace atlas
