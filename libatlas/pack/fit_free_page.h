@@ -8,9 +8,9 @@
 namespace atlas::pack {
 
 // From this many charts on, layouts at the right scale fill a page of any shape more than the
-// search for the largest scale does, which has to make do with coarser cells. From fewer on, they
-// may fill it more.
-inline constexpr std::size_t kManyOnFreePage = 500, kSomeOnFreePage = 129;
+// search for the largest scale does, which has to make do with coarser cells. From fewer on, either
+// may fill it more, so both are tried.
+inline constexpr std::size_t kManyOnFreePage = 1000, kSomeOnFreePage = 129;
 
 // Does fit_outlines with free_aspect for one page. Charts such as triangles are joined in pairs.
 // Since the page ends where the charts do, no scale is searched for: a strip is filled once or
