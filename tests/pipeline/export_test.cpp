@@ -333,7 +333,9 @@ TEST(Export, RefusesOptionsOutOfRange) {
       {"ChartOptions::crease_degrees", [](ExportOptions& o) { o.charts.crease_degrees = 0; }},
       {"ChartOptions::uv_aspect", [=](ExportOptions& o) { o.charts.uv_aspect = nan; }},
       {"ChartOptions::material_uv_aspects",
-       [=](ExportOptions& o) { o.charts.material_uv_aspects = {1, nan}; }},
+       [=](ExportOptions& o) {
+         o.charts.material_uv_aspects = {1, nan};
+       }},
       {"ToneOptions::white", [](ExportOptions& o) { o.tone.white = -1; }},
       {"ToneOptions::exposure_stops", [=](ExportOptions& o) { o.tone.exposure_stops = nan; }},
       {"ChartOptions::min_fill", [](ExportOptions& o) { o.charts.min_fill = 1; }},
