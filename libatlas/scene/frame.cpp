@@ -1,9 +1,9 @@
 #include "libatlas/scene/frame.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <glm/geometric.hpp>
+#include <limits>
 
 #include "libatlas/core/bounds.h"
 #include "libatlas/core/drop_rounding.h"
@@ -86,6 +86,19 @@ double moved_by(const Vec3d& position, const Frame& frame) {
                    std::abs(position.z - origin.z - stored.z)});
 }
 
+// Returns a bound on moved_by() for all positions in the box. It saves rounding them.
+double most_moved(const Box& box, const Frame& frame) {
+  double farthest = 0;
+  for (int i = 0; i < 3; ++i) {
+    const double origin = to_glm(frame.origin)[i];
+    farthest = std::max({farthest, std::abs(box.low[i] - origin), std::abs(box.high[i] - origin)});
+  }
+  if (farthest > double(std::numeric_limits<float>::max()))
+    return std::numeric_limits<double>::infinity();
+  constexpr double kHalfUlp = 0x1p-24, kLeast = 0x1p-150;
+  return std::max({kHalfUlp * farthest, kLeast, kRoundingDropped * frame.size});
+}
+
 std::vector<std::uint32_t> moved_positions(const FilePositions& file, const Frame& frame,
                                            double limit) {
   std::vector<std::uint32_t> moved;
@@ -130,7 +143,7 @@ Frame choose_frame(const FilePositions& file) {
   const Box box = box_of_used(file);
   const Frame whole{origin_of_box(box), diagonal_of(box)};
   const double edge = typical_edge(file);
-  if (!(edge > 0)) return whole;
+  if (!(edge > 0) || most_moved(box, whole) <= kMoved * edge) return whole;
   const std::size_t moved = moved_positions(file, whole, kMoved * edge).size();
   if (moved == 0) return whole;
   const Frame middle = median_frame(file, edge);
@@ -139,20 +152,18 @@ Frame choose_frame(const FilePositions& file) {
 
 RoundingLoss rounding_loss(const FilePositions& file, const Frame& frame) {
   RoundingLoss loss;
-  if (moved_positions(file, frame, 0).empty()) return loss;
-  const double edge = typical_edge(file);
-  if (edge > 0) loss.moved = moved_positions(file, frame, kMoved * edge);
+  const double edge = typical_edge(file), most = most_moved(box_of_used(file), frame);
+  if (edge > 0 && most > kMoved * edge) loss.moved = moved_positions(file, frame, kMoved * edge);
+  const auto closed = [&](std::uint32_t v, std::uint32_t w) {
+    const Vec3d &a = file.positions[v], &b = file.positions[w];
+    const double apart = std::max({std::abs(a.x - b.x), std::abs(a.y - b.y), std::abs(a.z - b.z)});
+    constexpr double kBoth = 2.001;  // both move, and the difference is rounded
+    return apart > 0 && apart <= kBoth * most && frame.stored(a) == frame.stored(b);
+  };
   for (std::size_t t = 0; t < file.indices.size() / 3; ++t) {
-    const std::uint32_t* corners = &file.indices[3 * t];
-    std::array<Vec3f, 3> to;
-    for (std::size_t c = 0; c < 3; ++c) to[c] = frame.stored(file.positions[corners[c]]);
-    for (std::size_t c = 0; c < 3; ++c) {
-      const std::size_t next = (c + 1) % 3;
-      if (to[c] != to[next] || file.positions[corners[c]] == file.positions[corners[next]])
-        continue;
+    const std::uint32_t* v = &file.indices[3 * t];
+    if (closed(v[0], v[1]) || closed(v[1], v[2]) || closed(v[2], v[0]))
       loss.closed.push_back(static_cast<std::uint32_t>(t));
-      break;
-    }
   }
   return loss;
 }
