@@ -19,9 +19,9 @@ namespace {
 
 // The share of the page that charts fill, for the first guess of the scale.
 constexpr double kGuess = 0.62;
-// A layout may examine this many words per chart. Thousands of noisy charts filled .61 of their
-// page instead of .55 with 40 times the words that one of few charts may examine, because their
-// cells are finer. The search continues where a chart of the same size was placed last, so it takes
+// A layout may examine this many words per chart. 4296 charts of a noisy terrain filled 0.61 of
+// their page instead of 0.55 with 64 times the words that OutlineFit allows, because cells are
+// finer. The search for a place begins where a chart of the same size was placed last, so it takes
 // less than these words.
 constexpr double kWordsFast = 45e3, kWords = 450e3, kWordsBest = 4.5e6;
 // Directions that `best` tries if outlines may be turned by any angle.
