@@ -30,17 +30,6 @@ double mean_side(std::span<const ChartOutline> outlines, const FitOptions& optio
 
 }  // namespace
 
-std::vector<double> chart_factors(std::span<const FitItem> items, const FitOptions& options,
-                                  double scale) {
-  std::vector<double> factors(items.size());
-  for (std::size_t i = 0; i < items.size(); ++i) {
-    const double side = std::max(items[i].width, items[i].height);
-    const double least = std::min<double>(options.minimum_side, std::ceil(side));
-    factors[i] = side > 0 ? std::max(scale, std::min(options.max_scale, least / side)) : scale;
-  }
-  return factors;
-}
-
 OutlineFit::OutlineFit(std::span<const FitItem> items, std::span<const ChartOutline> outlines,
                        const FitOptions& options, const Context& context)
     : items_(items), outlines_(outlines), options_(options), context_(context) {

@@ -4,13 +4,13 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <numeric>
 #include <utility>
 #include <vector>
 
 #include "libatlas/charts/filling/middle_cut.h"
 #include "libatlas/charts/flattening/part_of_chart.h"
 #include "tests/charts/chart_checks.h"
+#include "tests/charts/flat_shape.h"
 
 namespace atlas::test {
 namespace {
@@ -79,19 +79,6 @@ TEST(MiddleCut, SievesStayWhole) {
   for (const Shape& shape : {lattice(12, 6), lattice(9, 3)}) {
     EXPECT_EQ(checked_charts(Mesh(shape), ChartOptions{}.min_fill).charts.size(), 1u);
   }
-}
-
-// Returns the chart of a flat shape with the shape's own coordinates.
-FlatChart as_it_lies(const Shape& shape) {
-  FlatChart chart;
-  chart.triangles.resize(shape.triangle_count());
-  std::iota(chart.triangles.begin(), chart.triangles.end(), 0u);
-  for (std::size_t t = 0; t < shape.triangle_count(); ++t) {
-    const std::uint32_t* corner = &shape.indices[3 * t];
-    chart.corners.push_back({corner[0], corner[1], corner[2]});
-  }
-  for (const Vec3f& p : shape.positions) chart.uvs.push_back({p.x, p.y});
-  return chart;
 }
 
 // Returns the length of the edges between different parts, each found by its two vertices.

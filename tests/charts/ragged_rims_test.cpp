@@ -4,12 +4,12 @@
 #include <atomic>
 #include <chrono>
 #include <cmath>
-#include <numeric>
 #include <thread>
 
 #include "libatlas/charts/filling/limb_cutter.h"
 #include "libatlas/core/clock.h"
 #include "tests/charts/chart_checks.h"
+#include "tests/charts/flat_shape.h"
 #include "tests/support/slowness.h"
 
 namespace atlas::test {
@@ -46,17 +46,13 @@ TEST(RaggedRims, TakeLittleLongerThanSmoothOnes) {
   EXPECT_LT(ragged, 6 * seconds(saw(10000, 1.5f)));
 }
 
+// Returns a fan around the origin, which is corner 0 of its triangles, with its area.
 FlatChart flat(const Shape& shape) {
-  FlatChart chart;
-  chart.triangles.resize(shape.triangle_count());
-  std::iota(chart.triangles.begin(), chart.triangles.end(), 0u);
-  for (std::size_t t = 0; t < shape.triangle_count(); ++t) {
-    const std::uint32_t* corner = &shape.indices[3 * t];
-    chart.corners.push_back({corner[0], corner[1], corner[2]});
+  FlatChart chart = as_it_lies(shape);
+  for (const auto& corner : chart.corners) {
     const Vec3f &b = shape.positions[corner[1]], &c = shape.positions[corner[2]];
-    chart.distortion.uv_area += (b.x * c.y - b.y * c.x) / 2;  // corner 0 is the origin
+    chart.distortion.uv_area += (b.x * c.y - b.y * c.x) / 2;
   }
-  for (const Vec3f& p : shape.positions) chart.uvs.push_back({p.x, p.y});
   return chart;
 }
 
