@@ -9,6 +9,7 @@
 #include "libatlas/core/glm_bridge.h"
 #include "libatlas/exporters/camera.h"
 #include "libatlas/exporters/text_output.h"
+#include "libatlas/scene/uv_page.h"
 
 namespace atlas {
 namespace fs = std::filesystem;
@@ -46,6 +47,19 @@ GltfDocument::GltfDocument(const World& world, bool binary) : binary_(binary) {
 
 void GltfDocument::add_info(const std::string& line) {
   json["asset"]["extras"]["info"].push_back(line);
+}
+
+void GltfDocument::name_uv_sets(const std::set<std::int64_t>& sets) {
+  if (!json["asset"].contains("extras")) return;
+  nlohmann::json& info = json["asset"]["extras"]["info"];
+  nlohmann::json named = nlohmann::json::array();
+  for (const nlohmann::json& line : info) {
+    if (!uv_set_of_page(line.get<std::string>()))
+      named.push_back(line);
+    else
+      for (const std::int64_t set : sets) named.push_back(of_uv_set(set, line));
+  }
+  info = std::move(named);
 }
 
 std::size_t GltfDocument::add_view(const void* data, std::size_t size, nlohmann::json view) {

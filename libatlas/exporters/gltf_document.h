@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <set>
 #include <span>
 #include <string>
 #include <vector>
@@ -40,6 +41,10 @@ class GltfDocument {
 
   // Adds a line of information on the whole file.
   void add_info(const std::string& line);
+
+  // Makes the information say that these sets, TEXCOORD_0 and so on, hold the world's uvs: each
+  // line that says a page of uvs (scene/uv_page.h) becomes one for each set.
+  void name_uv_sets(const std::set<std::int64_t>& sets);
 
   // Returns an image whose file is embedded in a .glb (embedded_image), or lies beside a .gltf
   // (image_beside).

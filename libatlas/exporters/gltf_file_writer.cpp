@@ -64,8 +64,7 @@ class FileWriter {
     json asset = std::move(document_.json["asset"]);
     document_.json = source_.document;
     for (const char* list : {"accessors", "bufferViews"}) document_.json.erase(list);
-    document_.json["asset"] =
-        merge_assets(source_.document.value("asset", json()), std::move(asset));
+    document_.json["asset"] = std::move(asset);
   }
 
   Status run(GltfTextures& textures, const Context& context, WorldFile& result) {
@@ -87,6 +86,7 @@ class FileWriter {
     place_kept_meshes(world_, numbers, document_.json, losses_);
     drop_empty_meshes(document_.json, losses_);
     keep_rest(source_, data_, document_.json, losses_);
+    name_asset();
     result.uv_set = texcoord_name(set_);
     document_.add_info("the new uvs: " + result.uv_set);
     result.not_kept = losses_.lines();
@@ -95,6 +95,16 @@ class FileWriter {
 
  private:
   using Key = std::array<std::uint32_t, 2>;  // vertex of the primitive, uv
+
+  // Adds to what is known of the new uvs what the source says of itself.
+  void name_asset() {
+    std::set<std::int64_t> new_sets;
+    for (std::int64_t set = 0; set <= set_; ++set)
+      if (!own_sets_.contains(set)) new_sets.insert(set);
+    document_.name_uv_sets(new_sets);
+    json& asset = document_.json["asset"];
+    asset = merge_assets(source_.document.value("asset", json()), asset, new_sets);
+  }
 
   const tinygltf::Mesh& model_mesh(std::size_t mesh) const { return source_.model.meshes[mesh]; }
 
@@ -258,6 +268,7 @@ class FileWriter {
   // to the new uvs, too.
   void add_uvs(const std::vector<Key>& vertices, const std::set<std::int64_t>& own, json& to) {
     const std::size_t uvs = document_.add_uvs(gather(world_.uvs, vertices, 1));
+    own_sets_.insert(own.begin(), own.end());
     for (std::int64_t set = 0; set <= set_; ++set)
       if (!own.contains(set)) to[texcoord_name(set)] = uvs;
   }
@@ -279,7 +290,8 @@ class FileWriter {
   Losses losses_;
   GltfData data_;
   KeptMaterials materials_;
-  const std::int64_t set_;  // number of the new uv set
+  const std::int64_t set_;           // number of the new uv set
+  std::set<std::int64_t> own_sets_;  // those that any primitive shown keeps
 };
 
 }  // namespace

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "libatlas/scene/gltf_instances.h"
+#include "libatlas/scene/uv_page.h"
 
 namespace atlas {
 using nlohmann::json;
@@ -118,18 +119,31 @@ void keep_instances(GltfData& data, json& node, Losses& losses) {
   losses.add("instances of nodes whose data cannot be read");
 }
 
+// Returns the lines of a source that are still true. Pages of its uvs name their set, because they
+// are in one file with others now.
+json true_info(json info, bool ours, const std::set<std::int64_t>& new_sets) {
+  json lines = json::array();
+  if (info.is_null()) return lines;
+  if (!info.is_array()) info = json::array({std::move(info)});
+  for (const json& line : info) {
+    const auto set = line.is_string() ? uv_set_of_page(line.get<std::string>()) : std::nullopt;
+    if (set && !new_sets.contains(*set)) lines.push_back(of_uv_set(*set, line));
+    if (!set && !ours) lines.push_back(line);
+  }
+  return lines;
+}
+
 }  // namespace
 
-json merge_assets(const json& source, json own) {
+json merge_assets(const json& source, const json& own, const std::set<std::int64_t>& new_sets) {
   if (!source.is_object()) return own;
   const bool ours = source.value("generator", json()) == own["generator"];
   json merged = source;
   json& extras = merged["extras"];
   if (!extras.is_null() && !extras.is_object()) extras = {{"source", std::move(extras)}};
   if (extras.is_null()) extras = json::object();
-  json& info = extras["info"];  // that of an earlier export is no longer true
-  if (info.is_null() || ours) info = json::array();
-  if (!info.is_array()) info = json::array({std::move(info)});
+  json& info = extras["info"];
+  info = true_info(std::move(info), ours, new_sets);
   const json added = own.value("extras", json::object());
   if (added.contains("title") && !extras.contains("title")) extras["title"] = added["title"];
   for (const json& line : added.value("info", json::array())) info.push_back(line);

@@ -2,6 +2,9 @@
 // .cpp files only.
 #pragma once
 
+#include <cstdint>
+#include <set>
+
 #include "libatlas/exporters/gltf_data.h"
 #include "libatlas/scene/losses.h"
 
@@ -9,8 +12,10 @@ namespace atlas {
 
 // Returns the asset to write: what the source says of its author and licence, its title (if it has
 // none, the new one), and the information of both. If the source is an earlier export, its
-// information is replaced.
-nlohmann::json merge_assets(const nlohmann::json& source, nlohmann::json own);
+// information is replaced, except the pages of its uv sets. What the source says of the pages of
+// `new_sets` is left out in any case: these hold other uvs now.
+nlohmann::json merge_assets(const nlohmann::json& source, const nlohmann::json& own,
+                            const std::set<std::int64_t>& new_sets);
 
 // Removes from a part of the document the extensions that refer to data by number, except
 // EXT_mesh_gpu_instancing. Data gets new numbers, and only such an extension knows where its own

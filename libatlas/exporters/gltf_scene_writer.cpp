@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <map>
+#include <set>
 #include <tuple>
 #include <utility>
 
@@ -163,6 +164,16 @@ class SceneWriter {
     result.uvs += unified.vertices.size();
   }
 
+  // Returns the sets that hold the new uvs in all parts; to be called when all are added.
+  std::set<std::int64_t> new_sets() const {
+    std::set<std::int64_t> sets;
+    for (std::int64_t set = own_uvs_ ? 1 : 0; set <= last_set(); ++set) sets.insert(set);
+    return sets;
+  }
+
+  // Returns the number of the set that is printed as that of the new uvs.
+  std::int64_t last_set() const { return std::max(1, world_.uv_set); }
+
   // Adds the nodes; to be called when all meshes are known. If up axis, unit and origin are as glTF
   // requires, no node above the objects is needed.
   void add_nodes() {
@@ -192,12 +203,13 @@ class SceneWriter {
   // Engines look for light maps in the second uv set. glTF has no second set without a first, so a
   // part without uvs of its own refers to the new ones in both.
   json attributes(const ScenePart& part, const std::vector<Key>& vertices) {
+    own_uvs_ |= part.texcoords;
     json result;
     result["POSITION"] = document_.add_positions(gather(world_.positions, vertices, 0));
     if (part.normals) result["NORMAL"] = document_.add_vectors(gather(scene_.normals, vertices, 3));
     add_light(vertices, result);
     result["TEXCOORD_1"] = document_.add_uvs(gather(world_.uvs, vertices, 1));
-    for (int set = 2; set <= world_.uv_set; ++set)
+    for (std::int64_t set = 2; set <= last_set(); ++set)
       result[fmt::format("TEXCOORD_{}", set)] = result["TEXCOORD_1"];
     result["TEXCOORD_0"] = part.texcoords
                                ? json(document_.add_uvs(gather(scene_.texcoords, vertices, 2)))
@@ -233,6 +245,7 @@ class SceneWriter {
   std::vector<std::uint32_t> texcoord_, normal_;  // index of the first equal value
   const char* light_;                             // name of the light's attribute
   std::uint32_t object_ = 0;                      // the object of the last mesh
+  bool own_uvs_ = false;                          // whether any part has uvs of its own
 };
 
 // Counts what is lost: what an MTL says of materials and this file does not, what the reader left
@@ -266,7 +279,8 @@ Result<WorldFile> write_gltf_scene(const World& world, const fs::path& path, Ato
     context.report("writing the world", double(i + 1) / double(parts.size()));
   }
   writer.add_nodes();
-  result.uv_set = fmt::format("TEXCOORD_{}", std::max(1, world.uv_set));
+  result.uv_set = fmt::format("TEXCOORD_{}", writer.last_set());
+  document.name_uv_sets(writer.new_sets());
   document.add_info("the new uvs: " + result.uv_set);
   result.not_kept = losses_of(*world.scene);
   if (Status s = document.write(path, files, result); !s.ok()) return s;

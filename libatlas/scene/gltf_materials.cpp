@@ -196,9 +196,8 @@ void add_wraps(const tinygltf::Model& model, int texture, RawMaterial& material)
 
 }  // namespace
 
-Result<std::vector<int>> add_gltf_materials(const tinygltf::Model& model, SceneBuilder& builder) {
+Status add_gltf_materials(const tinygltf::Model& model, SceneBuilder& builder) {
   if (Status s = add_images(model, builder); !s.ok()) return s;
-  std::vector<int> sets;
   for (std::size_t i = 0; i < model.materials.size(); ++i) {
     const tinygltf::Material& m = model.materials[i];
     const Diffuse diffuse = diffuse_of(m);
@@ -223,12 +222,11 @@ Result<std::vector<int>> add_gltf_materials(const tinygltf::Model& model, SceneB
     }
     add_transform(diffuse.texture, material);
     add_wraps(model, diffuse.texture.index, material);
+    material.uv_set = texcoord_set(diffuse.texture);
     builder.materials.push_back(std::move(material));
-    sets.push_back(texcoord_set(diffuse.texture));
   }
   builder.materials.push_back({});
-  sets.push_back(0);
-  return sets;
+  return {};
 }
 
 }  // namespace atlas

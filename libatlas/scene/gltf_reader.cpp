@@ -45,9 +45,7 @@ class GltfParser {
       : model_(model), builder_(builder), context_(context), pose_(model, builder.wants_normals) {}
 
   Status run() {
-    auto sets = add_gltf_materials(model_, builder_);
-    if (!sets.ok()) return sets.status();
-    texcoord_set_ = std::move(*sets);
+    if (Status s = add_gltf_materials(model_, builder_); !s.ok()) return s;
     on_path_.assign(model_.nodes.size(), false);
     const std::vector<int> shown = roots();
     if (gltf_shown_size(model_, shown) > kMaxShown) return too_much();
@@ -257,7 +255,7 @@ class GltfParser {
   }
 
   Status add_texcoords(const tinygltf::Primitive& raw, Primitive& primitive) {
-    const int set = texcoord_set_[primitive.material];
+    const int set = builder_.materials[primitive.material].uv_set;
     const int accessor = gltf_attribute(raw.attributes, fmt::format("TEXCOORD_{}", set));
     if (accessor < 0) return {};
     const auto [at, is_new] = texcoords_.try_emplace(accessor);
@@ -360,7 +358,6 @@ class GltfParser {
   const tinygltf::Model& model_;
   SceneBuilder& builder_;
   const Context& context_;
-  std::vector<int> texcoord_set_;  // 1 per material
   GltfPose pose_;
   std::vector<bool> on_path_;  // 1 per node: from the root to the current one
   std::size_t visits_ = 0, nodes_visited_ = 0;

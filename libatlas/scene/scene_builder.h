@@ -31,6 +31,7 @@ struct RawMaterial : Material {
   // The texture coordinates of its triangles become row[0] u + row[1] v + row[2], with one row each
   // for u and v.
   std::array<double, 3> uv_u{1, 0, 0}, uv_v{0, 1, 0};
+  int uv_set = 0;  // which of the file's sets of texture coordinates they are
 
   bool moves_uv() const {
     return uv_u != std::array<double, 3>{1, 0, 0} || uv_v != std::array<double, 3>{0, 1, 0};

@@ -9,7 +9,8 @@ namespace atlas {
 namespace {
 
 constexpr std::string_view kSquare = "uvs of a square page", kPage = "uvs of a page of ",
-                           kNumbered = "uvs of page ", kTimes = " x ";
+                           kNumbered = "uvs of page ", kTimes = " x ", kSet = "TEXCOORD_";
+constexpr std::int64_t kUnnamed = -1;  // the set of a line that names none
 
 // Removes the beginning if the text has it, and returns whether it had.
 bool take_text(std::string_view& text, std::string_view beginning) {
@@ -50,6 +51,34 @@ std::int32_t page_number(std::string_view material) {
   return material.ends_with('.') ? -1 : take_number(number);  // "page1.001" is a copy of page1
 }
 
+// What one line says.
+struct PageLine {
+  std::int64_t set = kUnnamed;
+  std::optional<std::uint32_t> page = {};  // nothing: of the only one
+  double aspect = 0;                       // 0: the line says no page
+};
+
+PageLine parse(std::string_view line) {
+  PageLine said;
+  while (!line.empty() && (line[0] == '#' || line[0] == ' ' || line[0] == '"'))
+    line.remove_prefix(1);
+  if (take_text(line, kSet)) {
+    said.set = take_number(line);
+    if (said.set < 0 || !take_text(line, ": ")) return {};
+  }
+  if (take_text(line, kSquare)) {
+    said.aspect = 1;
+  } else if (take_text(line, kPage)) {
+    said.aspect = aspect_at(line);
+  } else if (take_text(line, kNumbered)) {
+    const std::int32_t page = take_number(line);
+    if (page < 0 || !take_text(line, ": ")) return {};
+    said.page = static_cast<std::uint32_t>(page);
+    said.aspect = aspect_at(line);
+  }
+  return said;
+}
+
 }  // namespace
 
 std::string uv_page_text(std::int32_t width, std::int32_t height) {
@@ -62,29 +91,35 @@ std::string uv_page_text(std::size_t page, std::int32_t width, std::int32_t heig
   return fmt::format("{}{}: {}{}{} texels", kNumbered, page, width, kTimes, height);
 }
 
-void UvPages::take(std::string_view line) {
-  while (!line.empty() && (line[0] == '#' || line[0] == ' ' || line[0] == '"'))
-    line.remove_prefix(1);
-  double aspect = 0;
-  if (take_text(line, kSquare)) {
-    aspect = 1;
-  } else if (take_text(line, kPage)) {
-    aspect = aspect_at(line);
-  } else if (take_text(line, kNumbered)) {
-    const std::int32_t page = take_number(line);
-    if (page < 0 || !take_text(line, ": ")) return;
-    if (aspect = aspect_at(line); aspect > 0)
-      by_number_.try_emplace(static_cast<std::uint32_t>(page), aspect);
-    return;
-  }
-  if (single_ == 0) single_ = aspect;
+std::string of_uv_set(std::int64_t set, const std::string& line) {
+  return line.starts_with(kSet) ? line : fmt::format("{}{}: {}", kSet, set, line);
 }
 
-double UvPages::aspect_of(std::string_view material) const {
-  if (by_number_.empty()) return single_;
+std::optional<std::int64_t> uv_set_of_page(std::string_view line) {
+  const PageLine said = parse(line);
+  if (said.aspect == 0) return {};
+  return said.set == kUnnamed ? 0 : said.set;
+}
+
+void UvPages::take(std::string_view line) {
+  const PageLine said = parse(line);
+  if (said.aspect == 0) return;
+  Pages& pages = sets_[said.set];
+  if (said.page)
+    pages.by_number.try_emplace(*said.page, said.aspect);
+  else if (pages.single == 0)
+    pages.single = said.aspect;
+}
+
+double UvPages::aspect_of(std::string_view material, std::int64_t set) const {
+  auto at = sets_.find(set);
+  if (at == sets_.end()) at = sets_.find(kUnnamed);
+  if (at == sets_.end()) return 0;
+  const Pages& pages = at->second;
+  if (pages.by_number.empty()) return pages.single;
   const std::int32_t page = page_number(material);
-  const auto found = page < 0 ? by_number_.end() : by_number_.find(std::uint32_t(page));
-  return found == by_number_.end() ? single_ : found->second;
+  const auto found = page < 0 ? pages.by_number.end() : pages.by_number.find(std::uint32_t(page));
+  return found == pages.by_number.end() ? pages.single : found->second;
 }
 
 }  // namespace atlas

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -18,19 +19,32 @@ std::string uv_page_text(std::int32_t width, std::int32_t height);
 // extension of an image if they have those.
 std::string uv_page_text(std::size_t page, std::int32_t width, std::int32_t height);
 
+// Returns such a line for a file that may have several sets of uvs: it names the set TEXCOORD_<set>
+// that it is about. A line that names a set already is returned as it is.
+std::string of_uv_set(std::int64_t set, const std::string& line);
+
+// Returns the set that a line says a page of: the one that it names, else 0. Returns nothing if the
+// line says no page.
+std::optional<std::int64_t> uv_set_of_page(std::string_view line);
+
 // What the lines of a file say of its pages.
 class UvPages {
  public:
   // Takes a line of any kind, which may have a comment's mark or a quotation mark before it. The
-  // first line for a page counts.
+  // first line for a page of a set counts.
   void take(std::string_view line);
 
-  // Returns width / height of the page of the material's uvs, or 0 if no line says it.
-  double aspect_of(std::string_view material) const;
+  // Returns width / height of the page of the material's uvs, which are those of this set, or 0 if
+  // no line says it. Lines that name no set are about all sets that no other line names.
+  double aspect_of(std::string_view material, std::int64_t set = 0) const;
 
  private:
-  double single_ = 0;                          // the ratio of a file's only page; 0: not said
-  std::map<std::uint32_t, double> by_number_;  // ratios of several pages
+  struct Pages {
+    double single = 0;                          // the ratio of the only page; 0: not said
+    std::map<std::uint32_t, double> by_number;  // ratios of several pages
+  };
+
+  std::map<std::int64_t, Pages> sets_;
 };
 
 }  // namespace atlas

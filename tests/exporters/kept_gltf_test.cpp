@@ -7,6 +7,7 @@
 #include <string>
 
 #include "libatlas/scene/reader.h"
+#include "libatlas/scene/uv_page.h"
 #include "tests/exporters/gltf_layout.h"
 #include "tests/exporters/kept_gltf.h"
 #include "tests/scene/draco_gltf.h"
@@ -250,6 +251,41 @@ TEST(KeptGltf, InformationIsAdded) {
     gltf.j["asset"] = c.asset;
     keep(folder.write("s.glb", gltf.glb()), folder / "w.glb");
     EXPECT_EQ(GltfOracle(folder / "w.glb").document["asset"]["extras"]["info"], c.info);
+  }
+}
+
+// Of an earlier export's information, the pages of the sets that stay are still true. Lines that
+// name no set are about the first one.
+TEST(KeptGltf, PagesOfItsUvsNameTheirSets) {
+  const std::string wide = uv_page_text(40, 10), high = uv_page_text(10, 40);
+  const struct {
+    std::vector<std::string> info, wanted;
+    int uv_set;
+    bool ours;
+  } cases[] = {
+      {{}, {of_uv_set(1, wide)}, 0, false},
+      {{high, "theirs"}, {of_uv_set(0, high), "theirs", of_uv_set(1, wide)}, 0, false},
+      {{uv_page_text(0, 8, 4), "old"},
+       {of_uv_set(0, uv_page_text(0, 8, 4)), of_uv_set(1, wide)},
+       0,
+       true},
+      {{of_uv_set(1, high), of_uv_set(2, high)}, {of_uv_set(2, high), of_uv_set(1, wide)}, 1, true},
+      {{of_uv_set(1, high)}, {of_uv_set(1, wide)}, 1, false}};
+  for (const auto& c : cases) {
+    const TempFolder folder;
+    Gltf gltf = textured(folder);
+    if (c.ours) gltf.j["asset"]["generator"] = "libatlas";
+    gltf.j["asset"]["extras"]["info"] = c.info;
+    const auto loaded = read_scene(folder.write("s.glb", gltf.glb()), kGltfRest, {});
+    ASSERT_TRUE(loaded.ok()) << loaded.status().message();
+    World world = world_of(loaded->scene);
+    world.info = {wide};
+    world.uv_set = c.uv_set;
+    ASSERT_TRUE(write_kept(world, folder / "w.glb").ok());
+    json info = GltfOracle(folder / "w.glb").document["asset"]["extras"]["info"];
+    EXPECT_EQ(info.back(), "the new uvs: TEXCOORD_1");
+    info.erase(info.size() - 1);
+    EXPECT_EQ(info, json(c.wanted));
   }
 }
 

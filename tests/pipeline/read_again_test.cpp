@@ -44,6 +44,35 @@ TEST(ReadAgain, ChartsOfAPageThatIsNotSquareAreReadAgain) {
   }
 }
 
+// A kept scene may have other uvs in its first set, of which the page of the new ones says nothing.
+TEST(ReadAgain, ThePageOfAKeptScenesNewUvsIsThatOfTheirSet) {
+  const TempFolder folder;
+  const Shape shape = grid(9, 9, 2, 1);
+  LoadedScene scene;
+  scene.scene.positions = shape.positions;
+  scene.scene.indices = shape.indices;
+  ASSERT_TRUE(complete_scene(scene.scene).ok());
+  ExportOptions options;
+  options.charts_only = options.keep_scene = true;
+  options.target = folder / "plain.glb";
+  const auto first = export_world(scene, options, {}, {});
+  ASSERT_TRUE(first.ok()) << first.status().message();
+  const double shape_of_page = double(first->pages[0].width) / first->pages[0].height;
+  EXPECT_NE(shape_of_page, 1);
+  // There the new uvs are in the first set, too.
+  EXPECT_EQ(read_scene(options.target, {}, {})->uv_aspect, shape_of_page);
+  for (const Vec3f& p : shape.positions) scene.scene.texcoords.push_back({p.x, p.y});
+  scene.scene.texcoord_indices = scene.scene.indices;
+  options.target = folder / "textured.glb";
+  ASSERT_TRUE(export_world(scene, options, {}, {}).ok());
+  EXPECT_EQ(read_scene(options.target, {}, {})->uv_aspect, 0);
+  // The same file kept once more.
+  const auto again = read_scene(folder / "plain.glb", {.keep_scene = true}, {});
+  options.target = folder / "twice.glb";
+  ASSERT_TRUE(export_world(*again, options, {}, {}).ok());
+  EXPECT_EQ(read_scene(options.target, {}, {})->uv_aspect, shape_of_page);
+}
+
 ExportReport exported(const LoadedScene& scene, const ExportOptions& options) {
   auto report = export_world(scene, options, {}, {});
   EXPECT_TRUE(report.ok()) << report.status().message();

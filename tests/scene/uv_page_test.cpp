@@ -48,6 +48,32 @@ TEST(UvPage, SeveralPagesAreFoundByTheNamesOfMaterials) {
     EXPECT_EQ(pages.aspect_of(other), 0) << other;
 }
 
+// Where lines name a set of uvs, each says the page of that set alone.
+TEST(UvPage, MayBeOfOneSetOfUvs) {
+  UvPages pages;
+  pages.take(of_uv_set(1, uv_page_text(40, 10)));
+  pages.take(of_uv_set(1, uv_page_text(10, 10)));
+  pages.take(of_uv_set(3, uv_page_text(0, 64, 32)));
+  EXPECT_EQ(pages.aspect_of("page0", 1), 4);
+  EXPECT_EQ(pages.aspect_of("page0", 3), 2);
+  EXPECT_EQ(pages.aspect_of("page0"), 0);
+  EXPECT_EQ(pages.aspect_of("page0", 2), 0);
+  pages.take(uv_page_text(10, 40));
+  EXPECT_EQ(pages.aspect_of("page0"), 0.25);
+  EXPECT_EQ(pages.aspect_of("page0", 1), 4);
+  EXPECT_EQ(of_uv_set(2, of_uv_set(1, "line")), of_uv_set(1, "line"));
+}
+
+TEST(UvPage, TellsWhichSetALineIsAbout) {
+  EXPECT_EQ(uv_set_of_page(uv_page_text(40, 10)), 0);
+  EXPECT_EQ(uv_set_of_page(uv_page_text(7, 40, 10)), 0);
+  EXPECT_EQ(uv_set_of_page(of_uv_set(12, uv_page_text(10, 10))), 12);
+  for (const char* other : {"", "TEXCOORD_1", "TEXCOORD_1: ", "TEXCOORD_: uvs of a square page",
+                            "TEXCOORD_-1: uvs of a square page", "TEXCOORD_1: a square page",
+                            "TEXCOORD_1 uvs of a square page", "the new uvs: TEXCOORD_1"})
+    EXPECT_FALSE(uv_set_of_page(other)) << other;
+}
+
 TEST(UvPage, IsReadFromTheHeadOfAnObj) {
   const TempFolder folder;
   const std::string triangle = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n",
@@ -98,6 +124,28 @@ TEST(UvPage, IsReadFromTheExtrasOfAGltf) {
   EXPECT_EQ(aspect({{"info", {1, test::json::object(), nullptr}}}), 0);
   EXPECT_EQ(aspect({{"info", uv_page_text(40, 10)}}), 0);
   EXPECT_EQ(aspect("text"), 0);
+}
+
+// The shape of one set's page is not that of the set that a material uses.
+TEST(UvPage, OfAGltfIsThatOfTheSetThatIsRead) {
+  const TempFolder folder;
+  Gltf g;
+  const int positions = g.floats(kSquare, "VEC3", 3),
+            uvs = g.floats({0, 0, 1, 0, 1, 1, 0, 1}, "VEC2", 2);
+  const int indices = g.indices(std::vector<std::uint16_t>{0, 1, 2, 0, 2, 3});
+  g.j["images"] = {{{"uri", "none.png"}}};
+  g.j["textures"] = {{{"source", 0}}};
+  g.single({{"attributes", {{"POSITION", positions}, {"TEXCOORD_0", uvs}, {"TEXCOORD_1", uvs}}},
+            {"indices", indices},
+            {"material", 0}});
+  g.j["asset"]["extras"] = {{"info", {of_uv_set(1, uv_page_text(40, 10))}}};
+  for (const int set : {0, 1}) {
+    g.j["materials"] = {
+        {{"pbrMetallicRoughness", {{"baseColorTexture", {{"index", 0}, {"texCoord", set}}}}}}};
+    const auto loaded = load_glb(folder, g);
+    ASSERT_TRUE(loaded.ok()) << loaded.status().message();
+    EXPECT_EQ(loaded->uv_aspect, set == 1 ? 4 : 0);
+  }
 }
 
 }  // namespace
