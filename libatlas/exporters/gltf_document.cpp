@@ -104,6 +104,15 @@ std::size_t GltfDocument::add_vectors(std::span<const Vec3f> values) {
   return add_bounded(values, nlohmann::json::object());
 }
 
+std::size_t GltfDocument::add_zeros(std::size_t count) {
+  const auto zero = nlohmann::json::array({0, 0, 0});
+  return add_accessor({{"componentType", kFloat},
+                       {"type", "VEC3"},
+                       {"count", count},
+                       {"min", zero},
+                       {"max", zero}});
+}
+
 std::size_t GltfDocument::add_uvs(std::vector<Vec2f> values) {
   for (Vec2f& uv : values) uv.y = 1 - uv.y;
   const std::size_t view =

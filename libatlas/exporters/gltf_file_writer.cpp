@@ -224,7 +224,7 @@ class FileWriter {
     for (const char* key : {"mode", "attributes", "targets", "material"}) primitive.erase(key);
     primitive["attributes"] = attributes(from, vertices);
     for (const auto& target : from.targets)
-      primitive["targets"].push_back(rows_of(target, vertices, "data of morph targets"));
+      primitive["targets"].push_back(morph_target(target, vertices));
     const auto sets = sets_of(rows_names(primitive["attributes"]));
     // Textures that used the uvs which are replaced are now those of the new ones.
     auto usable = sets;
@@ -255,6 +255,16 @@ class FileWriter {
       else
         losses_.add(loss);
     }
+    return result;
+  }
+
+  // A morph target moves the uvs that are replaced, not the new ones. The format allows no empty
+  // target, and meshes have a weight for each, so one that did nothing else moves nothing.
+  json morph_target(const std::map<std::string, int>& target,
+                    const std::vector<std::uint32_t>& vertices) {
+    losses_.add("uvs of morph targets, replaced", target.contains(texcoord_name(set_)));
+    json result = rows_of(target, vertices, "data of morph targets");
+    if (result.empty()) result["POSITION"] = document_.add_zeros(vertices.size());
     return result;
   }
 

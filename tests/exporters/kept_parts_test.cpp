@@ -5,6 +5,7 @@
 #include <functional>
 #include <string>
 
+#include "tests/exporters/gltf_layout.h"
 #include "tests/exporters/kept_gltf.h"
 
 namespace atlas::test {
@@ -286,6 +287,44 @@ TEST(KeptParts, TitlesAndGenerators) {
     EXPECT_EQ(asset["extras"]["title"], titled ? "theirs" : "ours");
     EXPECT_EQ(asset["generator"], "libatlas");
   }
+}
+
+// What morph targets do to uvs that are replaced is counted. A target that did nothing else stays,
+// because meshes have a weight for each, and moves nothing.
+TEST(KeptParts, UvsOfMorphTargetsThatAreReplacedAreTold) {
+  const TempFolder folder;
+  Gltf gltf = textured(folder);
+  json& primitive = gltf.j["meshes"][0]["primitives"][0];
+  const int uvs = primitive["attributes"]["TEXCOORD_0"];
+  const int moves = primitive["attributes"]["POSITION"];
+  primitive["attributes"]["TEXCOORD_1"] = uvs;
+  primitive["targets"] = {{{"TEXCOORD_1", uvs}},
+                          {{"POSITION", moves}, {"TEXCOORD_0", uvs}, {"TEXCOORD_1", uvs}},
+                          {{"POSITION", moves}}};
+  const auto loaded = read_scene(folder.write("s.glb", gltf.glb()), kGltfRest, {});
+  ASSERT_TRUE(loaded.ok()) << loaded.status().message();
+  World world = world_of(loaded->scene);
+  const auto targets_of = [&](const Lines& not_kept) {
+    const auto written = write_kept(world, folder / "w.glb");
+    EXPECT_TRUE(written.ok()) << written.status().message();
+    EXPECT_EQ(written->not_kept, not_kept);
+    expect_gltf_layout(folder / "w.glb");
+    const GltfOracle after(folder / "w.glb");
+    return after.document["meshes"][0]["primitives"][0]["targets"];
+  };
+  EXPECT_TRUE(targets_of({})[0].contains("TEXCOORD_1"));
+  world.uv_set = 1;
+  const json targets = targets_of({"2 x uvs of morph targets, replaced"});
+  ASSERT_EQ(targets.size(), 3u);
+  ASSERT_TRUE(targets[0].contains("POSITION"));
+  EXPECT_FALSE(targets[0].contains("TEXCOORD_1") || targets[1].contains("TEXCOORD_1"));
+  EXPECT_TRUE(targets[1].contains("POSITION") && targets[1].contains("TEXCOORD_0"));
+  const json zeros =
+      GltfOracle(folder / "w.glb").document["accessors"][targets[0]["POSITION"].get<std::size_t>()];
+  EXPECT_EQ(zeros["count"], 3);
+  EXPECT_EQ(zeros["max"], json({0, 0, 0}));
+  EXPECT_FALSE(zeros.contains("bufferView"));
+  EXPECT_TRUE(read_scene(folder / "w.glb", {}, {}).ok());
 }
 
 }  // namespace
