@@ -88,11 +88,20 @@ void write_materials(TextFile& mtl, const Scene& scene, const std::vector<std::s
   }
 }
 
+std::size_t triangles_with_uvs(const Scene& scene) {
+  const auto& uvs = scene.texcoord_indices;
+  std::size_t count = 0;
+  for (std::size_t k = 0; k < uvs.size(); k += 3)
+    count += std::any_of(&uvs[k], &uvs[k] + 3, [](auto uv) { return uv != Scene::kNoTexcoord; });
+  return count;
+}
+
 // Counts what the scene's file has and this one does not. If the scene holds its source file, that
 // tells more than what the reader has counted.
 void count_file_losses(const Scene& scene, Losses& losses) {
   if (scene.source) return count_losses(scene.source->model, losses);
   losses.add(scene.not_read);
+  losses.add("triangles with uvs of their own", triangles_with_uvs(scene));
   for (const Material& material : scene.materials)
     losses.add("textures of materials", material.mtl_lines.empty() && material.texture >= 0);
 }

@@ -175,9 +175,13 @@ TEST(KeptLook, LossesOfObjAreCounted) {
   scene.materials[1].mtl_lines = {"map_Kd a.png"};  // counted as the line that it is
   const auto written = write_kept(world_of(scene), folder / "w.obj");
   ASSERT_TRUE(written.ok());
-  EXPECT_EQ(written->not_kept,
-            (Lines{"1 x textures of materials",
-                   "1 x textures of materials (lines of the MTL, now comments)", "3 x widgets"}));
+  EXPECT_EQ(written->not_kept, (Lines{"1 x textures of materials",
+                                      "1 x textures of materials (lines of the MTL, now comments)",
+                                      "4 x triangles with uvs of their own", "3 x widgets"}));
+  for (const std::size_t corner : {3, 4, 5, 6}) scene.texcoord_indices[corner] = Scene::kNoTexcoord;
+  EXPECT_EQ(write_kept(world_of(scene), folder / "w.obj")->not_kept[2],
+            "3 x triangles with uvs of their own");
+  EXPECT_EQ(write_kept(world_of(scene), folder / "w.glb")->not_kept, Lines{"3 x widgets"});
 }
 
 // In an OBJ, a '#' at the begin of a word begins a comment, and blanks around a name are lost.

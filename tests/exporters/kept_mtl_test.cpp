@@ -30,8 +30,8 @@ TEST(KeptMtl, LinesOfMtl) {
       "mtllib m.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nusemtl a\nf 1/1 2/1 3/1\nusemtl b\n"
       "f 1/1 3/1 2/1\n");
   const WorldFile written = keep(obj, folder / "w.obj", kRest);
-  EXPECT_EQ(written.not_kept,
-            (Lines{"5 x textures of materials (lines of the MTL, now comments)"}));
+  EXPECT_EQ(written.not_kept, (Lines{"5 x textures of materials (lines of the MTL, now comments)",
+                                     "2 x triangles with uvs of their own"}));
   const std::string mtl = TempFolder::read(folder / "w.mtl");
   EXPECT_NE(mtl.find("newmtl a\nKd 0.5 0 0\nd 0.5\nKa 1 1 1\nKe 2 2 0 # glows\nKs 1 0 1\nNs 250\n"
                      "Tr 0.5\nillum 2\n#map_Kd -s 2 2 a b.png\n#map_Bump n.png\n#bump n.png\n"
