@@ -11,6 +11,7 @@
 #include "libatlas/charts/flattening/flatten.h"
 #include "libatlas/charts/flattening/slits.h"
 #include "libatlas/charts/given_uvs.h"
+#include "libatlas/charts/mesh/noise.h"
 #include "libatlas/charts/mesh/topology.h"
 #include "libatlas/charts/parts.h"
 #include "libatlas/charts/totals.h"
@@ -310,6 +311,8 @@ Result<ChartSet> make_charts(const MeshView& mesh, const ChartOptions& options,
   set.timing.segmentation_cpu = own_cpu_seconds() - start;
   set.timing.noise_cpu = topology.noise_cpu;
   set.timing.topology_cpu = set.timing.segmentation_cpu - topology.noise_cpu;
+
+  if (!options.keep_uv_charts) set.noise = measure_noise(topology, options.max_stretch);
 
   context.report("charts", 0.1);
   const Context rest = part_of_stage(context, "charts", 0.1);

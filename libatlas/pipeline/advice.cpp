@@ -40,6 +40,27 @@ std::string on_small_charts(const ExportReport& report, double texels_a_chart) {
       report.charts.size(), texels_a_chart, 100 * (1 - report.uv_utilization));
 }
 
+// Returns whether the number of charts grows with that of the triangles because single vertices
+// exceed the bound. On balls of 49,000 and 197,000 triangles, scan noise of 15 % of the edges has
+// no peaks, and 4 charts are enough; noise of 20 % has them at 0.012 and 0.023 % of the vertices,
+// and they take 31 and 119 charts.
+bool shattered_by_noise(const ExportReport& report, const ExportOptions& options) {
+  constexpr double kPeaks = 0.0001;
+  constexpr std::size_t kManyCharts = 64, kChartsAPeak = 8;
+  const auto peaks = report.noise.peaks;
+  return options.charts.cone_degrees == 0 && report.charts.size() >= kManyCharts &&
+         double(peaks) > kPeaks * double(report.noise.vertices) &&
+         kChartsAPeak * peaks >= report.charts.size();
+}
+
+std::string on_noise(const ExportReport& report) {
+  return fmt::format(
+      "{} charts, more the finer the mesh is: its surface is rough as by scan noise, and {} of {} "
+      "vertices are peaks that stretch a chart beyond the bound (smooth the mesh first, or a "
+      "larger ChartOptions::max_stretch)",
+      report.charts.size(), report.noise.peaks, report.noise.vertices);
+}
+
 double packed_texel_mm(const ExportReport& report) {
   return 1e3 * report.packed_texel * report.metres_per_unit;
 }
@@ -125,6 +146,7 @@ std::vector<std::string> advice_on(const ExportReport& report, const ExportOptio
     lines.push_back(
         "no triangle has an area, so uvs say nothing (check how the scene was exported, and the "
         "digits of its coordinates)");
+  if (shattered_by_noise(report, options)) lines.push_back(on_noise(report));
   if (report.pages.empty() || report.gpu_bytes == 0) return lines;  // no light was baked
   if (report.luminance.lit_area == 0 && report.luminance.unlit_area > 0)
     lines.push_back(

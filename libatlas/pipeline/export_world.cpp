@@ -103,6 +103,7 @@ class Export {
     report_charts();
     report_.surface_area = charts_.surface_area;
     report_.repairs = charts_.repairs;
+    report_.noise = charts_.noise;
     report_.chart_timing = charts_.timing;
     std::string quality = fmt::format("L2 {:.4f}, 99.9 % {:.3f}", charts_.distortion.stretch_l2,
                                       charts_.distortion.stretch_999);

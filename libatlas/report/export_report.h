@@ -56,6 +56,7 @@ struct ExportReport {
   Distortion distortion = {};
   double seam_length = 0, surface_area = 0;  // scene units, scene units squared
   ChartSet::Repairs repairs = {};
+  ChartSet::Noise noise = {};
   ChartSet::Timing chart_timing = {};
 
   // Light

@@ -6,6 +6,7 @@
 #include <cstdio>
 
 #include "libatlas/pipeline/export_world.h"
+#include "libatlas/scene/check_scene.h"
 #include "libatlas/scene/reader.h"
 #include "tests/pipeline/lit_scene.h"
 #include "tests/scene/temp_folder.h"
@@ -213,6 +214,49 @@ TEST(Advice, TexelsThatPagesCannotHoldAreNamed) {
                     "texels are 25 mm long, not the 5 mm of ExportOptions::texel_metres"));
   report.texel = 1.25;
   EXPECT_TRUE(advice_on(report, {}).empty());
+}
+
+TEST(Advice, NoiseThatShattersChartsIsNamed) {
+  ExportReport report = report_of(100, 1, 1024);
+  report.noise = {100000, 60};
+  EXPECT_TRUE(holds(advice_on(report, {}),
+                    "60 of 100000 vertices are peaks that stretch a chart beyond the bound (smooth "
+                    "the mesh first, or a larger ChartOptions::max_stretch)"));
+  report.gpu_bytes = 0;  // without light
+  EXPECT_EQ(advice_on(report, {}).size(), 1u);
+  const auto silent = [&](auto change) {
+    ExportReport other = report;
+    change(other);
+    return advice_on(other, {}).empty();
+  };
+  EXPECT_TRUE(silent([](ExportReport& r) { r.noise = {}; }));
+  EXPECT_TRUE(silent([](ExportReport& r) { r.noise.vertices = 700000; }));
+  EXPECT_TRUE(silent([](ExportReport& r) { r.charts.resize(63); }));
+  EXPECT_TRUE(silent([](ExportReport& r) { r.noise = {10000, 10}; }));
+  ExportOptions options;
+  options.charts.cone_degrees = 30;  // needs many charts in any case
+  EXPECT_TRUE(advice_on(report, options).empty());
+}
+
+// On an even mesh, charts grow with the mesh from a noise of 35 % on.
+TEST(Advice, OnlyNoiseThatTakesManyChartsIsNamed) {
+  const TempFolder folder;
+  for (const double noise : {0.05, 0.15, 0.3, 0.5}) {
+    const Shape ball = noisy_along_normals(geodesic_sphere(32), noise);
+    LoadedScene scene;
+    scene.scene.positions = ball.positions;
+    scene.scene.indices = ball.indices;
+    ASSERT_TRUE(complete_scene(scene.scene).ok());
+    ExportOptions options;
+    options.target = folder / "world.obj";
+    options.charts_only = true;
+    const auto report = export_world(scene, options, {}, {});
+    ASSERT_TRUE(report.ok()) << report.status().message();
+    const bool strong = noise > 0.4;
+    EXPECT_EQ(report->charts.size() > 20, strong) << report->charts.size();
+    EXPECT_EQ(report->advice.empty(), !strong) << noise;
+    EXPECT_EQ(holds(report->advice, "rough as by scan noise"), strong);
+  }
 }
 
 TEST(Advice, PagesThatLoseTheDetailOfTheLightAreNamed) {

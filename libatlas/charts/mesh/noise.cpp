@@ -1,6 +1,9 @@
 #include "libatlas/charts/mesh/noise.h"
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
 
 #include "libatlas/core/glm_bridge.h"
 
@@ -49,6 +52,17 @@ Vec3f averaged(const Topology& topology, const std::vector<Vec3f>& normals, std:
   return length > 0 ? from_glm(glm::vec3(sum / length)) : normals[t];
 }
 
+// Returns the angle of a triangle at the corner where the half-edge starts, radians.
+double angle(const Topology& topology, std::uint32_t half_edge) {
+  const auto point = [&](std::uint32_t h) {
+    return to_dvec(topology.points[topology.corner_vertex[h]]);
+  };
+  const glm::dvec3 from = point(half_edge);
+  const glm::dvec3 a = point(next_half_edge(half_edge)) - from,
+                   b = point(previous_half_edge(half_edge)) - from;
+  return std::atan2(glm::length(glm::cross(a, b)), glm::dot(a, b));
+}
+
 }  // namespace
 
 void calm_noise(Topology& topology, const Context& context) {
@@ -64,6 +78,27 @@ void calm_noise(Topology& topology, const Context& context) {
     now.swap(next);
   }
   topology.calm_normals = std::move(now);
+}
+
+ChartSet::Noise measure_noise(const Topology& topology, double max_stretch) {
+  ChartSet::Noise noise;
+  if (topology.calm_normals.empty()) return noise;
+  const std::vector<std::uint8_t> noisy = noisy_pieces(topology);
+  constexpr double kOpen = std::numeric_limits<double>::infinity();  // at a border
+  std::vector<double> angles(topology.points.size(), 0);
+  for (std::uint32_t h = 0; h < topology.opposite.size(); ++h) {
+    if (topology.component[h / 3] == kNoIndex || !noisy[topology.component[h / 3]]) continue;
+    const auto at = [&](std::uint32_t k) { return topology.corner_vertex[k]; };
+    const std::uint32_t next = next_half_edge(h);
+    angles[at(h)] += angle(topology, h);
+    if (topology.opposite[h] == kNoIndex) angles[at(h)] = angles[at(next)] = kOpen;
+  }
+  const double least = 2 * std::numbers::pi / (max_stretch * max_stretch);
+  for (const double sum : angles) {
+    noise.vertices += sum > 0;
+    noise.peaks += sum > 0 && sum < least;
+  }
+  return noise;
 }
 
 }  // namespace atlas

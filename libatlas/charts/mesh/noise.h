@@ -12,4 +12,8 @@ namespace atlas {
 // bilateral filtering of normals; Zheng et al. 2011). Linear.
 void calm_noise(Topology& topology, const Context& context);
 
+// Counts the vertices of the pieces in which calm_noise() finds noise, and the peaks among them,
+// see ChartSet::Noise. Linear; does nothing without such pieces.
+ChartSet::Noise measure_noise(const Topology& topology, double max_stretch);
+
 }  // namespace atlas
