@@ -86,6 +86,15 @@ std::string on_coarse_texels(const ExportReport& report, const ExportOptions& op
 // it.
 constexpr double kPoorDecibels = 35;
 
+// From here on the error is below what halving may cost (ExportOptions::threshold), so that finer
+// texels would show nothing more.
+constexpr double kFaithfulDecibels = 45;
+
+bool is_faithful(const ExportReport& report) {
+  return report.error_measured && report.fidelity.lit > 0 &&
+         report.fidelity.psnr >= kFaithfulDecibels;
+}
+
 bool loses_detail(const ExportReport& report) {
   const double texel = report.packed_texel * report.metres_per_unit;
   return report.error_measured && report.fidelity.lit > 0 && report.fidelity.psnr < kPoorDecibels &&
@@ -162,7 +171,7 @@ std::vector<std::string> advice_on(const ExportReport& report, const ExportOptio
     lines.push_back(on_small_charts(report, texels_a_chart));
   else if (asked > 0 && !coarse && texels_a_chart < kHardlyAny)
     lines.push_back(on_long_texels(report, texels_a_chart));
-  if (coarse)
+  if (coarse && (asked > 0 || !is_faithful(report)))
     lines.push_back(on_coarse_texels(report, options));
   else if (loses_detail(report))
     lines.push_back(on_lost_detail(report));

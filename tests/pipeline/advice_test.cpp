@@ -216,6 +216,48 @@ TEST(Advice, TexelsThatPagesCannotHoldAreNamed) {
   EXPECT_TRUE(advice_on(report, {}).empty());
 }
 
+// Where the light is smooth, coarse texels show all of it. A length that was asked for is another
+// matter, and an error that was not measured may be of any size.
+TEST(Advice, CoarseTexelsThatLoseNothingAreNotNamed) {
+  ExportReport report = report_of(100, 8, 1024);
+  report.packed_texel = 0.025;
+  report.texel = 0.01;
+  report.error_measured = true;
+  report.fidelity.lit = 1000;
+  report.fidelity.psnr = 45;
+  EXPECT_TRUE(advice_on(report, {}).empty());
+  EXPECT_TRUE(holds(advice_on(report, {.texel_metres = 0.01}), "texels are 25 mm long"));
+  report.fidelity.psnr = 44.9;
+  EXPECT_TRUE(holds(advice_on(report, {}), "texels are 25 mm long"));
+  report.fidelity.psnr = 45;
+  report.error_measured = false;
+  EXPECT_TRUE(holds(advice_on(report, {}), "texels are 25 mm long"));
+}
+
+// A wall of 400 m² gets texels of 40 mm on one page of 512. Its light is smooth, or a chequerboard
+// of the vertices.
+TEST(Advice, CoarseTexelsAreNamedWhereTheyBlurTheLight) {
+  const TempFolder folder;
+  LoadedScene scene = lit_scene(grid(200, 200, 20, 20));
+  ExportOptions options;
+  options.target = folder / "world.obj";
+  options.atlases = 1;
+  options.atlas_size = 512;
+  options.threshold = 0;  // smooth light would take a smaller page
+  for (const bool smooth : {true, false}) {
+    for (std::size_t v = 0; v < scene.scene.positions.size(); ++v) {
+      const Vec3f p = scene.scene.positions[v];
+      const float light = smooth ? 1 + 0.04f * p.x : float(v % 2);
+      scene.scene.illumination[v] = {light, light, light};
+    }
+    const auto report = export_world(scene, options, {}, {});
+    ASSERT_TRUE(report.ok()) << report.status().message();
+    EXPECT_GT(report->packed_texel, 2 * report->texel);
+    EXPECT_EQ(report->advice.empty(), smooth) << report->fidelity.psnr;
+    EXPECT_EQ(holds(report->advice, "texels are "), !smooth);
+  }
+}
+
 TEST(Advice, NoiseThatShattersChartsIsNamed) {
   ExportReport report = report_of(100, 1, 1024);
   report.noise = {100000, 60};
