@@ -25,8 +25,7 @@ void add_scene_options(CLI::App& app, ExportCommand& command, RawText& raw) {
                  "Scene: .obj, .ply, .off, .stl, .gltf, .glb, or a .wrl or .wrz of this program")
       ->required();
   app.add_option("-o,--output", command.options.target,
-                 "World to write: .wrl, .wrz, .obj, .gltf or .glb")
-      ->required();
+                 "World to write: .wrl, .wrz, .obj, .gltf or .glb; --plan needs none");
   app.add_option("--unit", raw.unit, "Length of one scene unit: m, cm, mm, in, ft, km or metres")
       ->capture_default_str();
   app.add_option("--illumination", command.read.illumination_file,
@@ -242,6 +241,10 @@ std::optional<ExportCommand> parse_export_command(int argc, char** argv, int& ex
   exit_code = 2;
   if (const auto wrong = interpret(raw, command)) {
     print_error("atlas-export", *wrong);
+    return std::nullopt;
+  }
+  if (command.options.target.empty() && !command.plan_only) {
+    print_error("atlas-export", "--output is required (--help lists the options)");
     return std::nullopt;
   }
   if (command.plan_only && command.quiet && command.report.empty()) {

@@ -80,6 +80,7 @@ bool named_as_page(const std::filesystem::path& file, const std::filesystem::pat
 // earlier export, or links to any file.
 std::vector<std::filesystem::path> images_there(const Scene& scene, const ExportOptions& options) {
   const std::filesystem::path& target = options.target;
+  if (target.empty()) return {};
   const auto folder = target.has_parent_path() ? target.parent_path() : std::filesystem::path(".");
   const std::string world = lower_extension(target);
   std::vector<std::filesystem::path> there;
@@ -118,7 +119,8 @@ Status check_outputs(const app::ExportCommand& command) {
     return s;
   const std::string ending = lower_extension(report);
   const bool image = ending == ".png" || ending == ".exr" || ending == ".jpg";
-  if (image && (named_as_page(report, target) || named_as_page(report, target, "texture")))
+  if (image && !target.empty() &&
+      (named_as_page(report, target) || named_as_page(report, target, "texture")))
     return {
         ErrorCode::bad_option,
         fmt::format("--report {}: is the name of an image of the world (give the report another)",
@@ -193,8 +195,15 @@ ReadOptions read_options(const app::ExportCommand& command) {
   return read;
 }
 
+// A plan needs no target. The options are then those for a target that takes all of them.
+Status check_command(const app::ExportCommand& command) {
+  ExportOptions options = command.options;
+  if (options.target.empty()) options.target = "plan.glb";
+  return check_options(options);
+}
+
 Status run(const app::ExportCommand& command, app::Terminal& terminal) {
-  if (Status s = check_options(command.options); !s.ok()) return s;
+  if (Status s = check_command(command); !s.ok()) return s;
   if (Status s = check_outputs(command); !s.ok()) return s;
   const Context context = terminal.context(command.threads);
   const double cpu = cpu_seconds(), wall = wall_seconds();

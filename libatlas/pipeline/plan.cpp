@@ -272,9 +272,12 @@ Status check_plan(const ExportPlan& plan, const ExportOptions& options) {
             "its own (add "
             "ExportOptions::charts_only to get uvs without light)"};
   }
-  if (Status s = check_writable(target); !s.ok() || !plan.bake) return s;
-  const std::string last_page = page_name(target, options.atlases - 1) + ".png";
-  if (Status s = check_writable(target.parent_path() / last_page); !s.ok()) return s;
+  if (!target.empty()) {
+    if (Status s = check_writable(target); !s.ok() || !plan.bake) return s;
+    const std::string last_page = page_name(target, options.atlases - 1) + ".png";
+    if (Status s = check_writable(target.parent_path() / last_page); !s.ok()) return s;
+  }
+  if (!plan.bake) return {};
   // A chart smaller than a texel has no place on a page.
   const double across = std::sqrt(plan.surface_area_m2);
   if (plan.texel_metres <= across) return {};

@@ -29,7 +29,8 @@ ExportReport planned_report(const LoadedScene& loaded, const ExportPlan& plan,
                             const ExportOptions& options);
 
 // Finds errors that would otherwise show only after minutes: texels larger than the scene, and
-// files that could not be written. Errors: bad_input, bad_option, io.
+// files that could not be written (none without ExportOptions::target). Errors: bad_input,
+// bad_option, io.
 Status check_plan(const ExportPlan& plan, const ExportOptions& options);
 
 }  // namespace atlas

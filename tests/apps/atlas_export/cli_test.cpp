@@ -231,6 +231,24 @@ TEST_F(AtlasExport, PlanRunsNothing) {
   EXPECT_EQ(files(), before);
 }
 
+// Nothing is written, so no name is needed, and none is checked.
+TEST_F(AtlasExport, APlanNeedsNoOutput) {
+  const fs::path scene = write("box.obj", lit_box(4));
+  const auto before = files();
+  const RunResult named = run(fmt::format("{} -o {}/w.glb --plan", scene.string(), dir_.string()));
+  const RunResult r = run(fmt::format("{} --plan", scene.string()));
+  EXPECT_EQ(r.exit_code, 0);
+  EXPECT_EQ(r.output, named.output);
+  EXPECT_EQ(
+      run(fmt::format("{} --plan --charts-only --keep-scene --uv-set 2", scene.string())).exit_code,
+      0);
+  EXPECT_EQ(run(fmt::format("{} --plan --texel 50m", scene.string())).exit_code, 2);
+  const RunResult none = run(scene.string());
+  EXPECT_EQ(none.exit_code, 2);
+  EXPECT_NE(none.output.find("--output is required"), std::string::npos) << none.output;
+  EXPECT_EQ(files(), before);
+}
+
 TEST_F(AtlasExport, ThePlanCanBeReported) {
   write("box.obj", lit_box(4));
   const RunResult r =
