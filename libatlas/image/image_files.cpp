@@ -13,6 +13,7 @@
 #include <memory>
 #include <new>
 #include <string_view>
+#include <type_traits>
 #include <utility>
 
 #include "libatlas/core/write_error.h"
@@ -45,10 +46,12 @@ Status failure(const std::filesystem::path& path, const char* what, const std::s
   return {ErrorCode::io, fmt::format("{}: {}: {}", path.string(), what, why)};
 }
 
-// An image that OpenImageIO reads, and its name for messages.
+// An image that OpenImageIO reads, and its name for messages. `file` is null if OpenImageIO opens
+// the file by itself.
 struct Source {
-  std::unique_ptr<OIIO::ImageInput> input;
-  std::uint64_t bytes = 0;  // of the file
+  std::unique_ptr<OIIO::Filesystem::IOFile> file;
+  std::unique_ptr<OIIO::ImageInput> input;  // reads `file`, so it is destroyed first
+  std::uint64_t bytes = 0;                  // of the file
   std::string name;
 };
 
@@ -150,13 +153,35 @@ bool may_be_multiplied(const OIIO::ImageInput& input) {
          input.spec().get_int_attribute("oiio:UnassociatedAlpha") == 0;
 }
 
+// Divides colours by alpha where a TIFF says that they are multiplied by it. Those of other formats
+// that say so are linear (OpenEXR), and no textures.
+template <class T>
+void divide_by_alpha(const OIIO::ImageInput& input, Image<T>& image) {
+  const int alpha = input.spec().alpha_channel;
+  if (std::string_view(input.format_name()) != "tiff" || alpha != image.channels - 1 ||
+      input.spec().get_int_attribute("oiio:UnassociatedAlpha") != 0)
+    return;
+  constexpr float kOne = std::is_same_v<T, std::uint8_t> ? 255 : 1;
+  for (std::size_t i = 0; i < image.texels.size(); i += std::size_t(image.channels)) {
+    const float share = float(image.texels[i + std::size_t(alpha)]) / kOne;
+    if (!(share > 0) || share >= 1) continue;
+    for (std::size_t c = 0; c < std::size_t(alpha); ++c) {
+      const float colour = float(image.texels[i + c]) / share;
+      if constexpr (std::is_same_v<T, std::uint8_t>)
+        image.texels[i + c] = T(std::min(kOne, std::round(colour)));
+      else
+        image.texels[i + c] = colour;
+    }
+  }
+}
+
 // Reads the colours of a WebP file again, from a copy without alpha. Dividing the multiplied ones
 // by alpha would not do: they have been rounded, and nothing is left of them where alpha is 0.
 template <class T>
 Status restore_colors(std::span<const std::uint8_t> file, const Source& source, Image<T>& image) {
   const std::vector<std::uint8_t> opaque = without_webp_alpha(file);
   OIIO::Filesystem::IOMemReader memory(const_cast<std::uint8_t*>(opaque.data()), opaque.size());
-  Source copy{open_bytes(memory, ".webp"), source.bytes, source.name};
+  Source copy{nullptr, open_bytes(memory, ".webp"), source.bytes, source.name};
   if (!copy.input) return failure(source.name, "cannot be read as an image", OIIO::geterror());
   Result<Image<T>> colors = read_pixels<T>(copy);
   if (!colors.ok()) return colors.status();
@@ -175,6 +200,21 @@ Result<std::vector<std::uint8_t>> whole_file(const Source& source) {
   return bytes;
 }
 
+// Opens the file of the source's name. OpenImageIO takes what follows a '?' in a name for options
+// of its own. It then gets the open file, beside a name without '?', by which it picks a reader.
+void open_file(Source& source) {
+  OIIO::ImageSpec config = input_settings();
+  std::string name = source.name;
+  OIIO::Filesystem::IOProxy* proxy = nullptr;
+  if (name.find('?') != std::string::npos) {
+    source.file = std::make_unique<OIIO::Filesystem::IOFile>(name, OIIO::Filesystem::IOProxy::Read);
+    proxy = source.file.get();
+    config.attribute("oiio:ioproxy", OIIO::TypeDesc::PTR, &proxy);
+    std::replace(name.begin(), name.end(), '?', '_');
+  }
+  source.input = OIIO::ImageInput::open(name, &config, proxy);
+}
+
 template <class T>
 Result<Image<T>> read(const std::filesystem::path& path) {
   std::error_code error;
@@ -183,15 +223,15 @@ Result<Image<T>> read(const std::filesystem::path& path) {
                  : Status(ErrorCode::not_found, fmt::format("{}: no such image", path.string()));
   }
   return within_memory(path.string(), [&]() -> Result<Image<T>> {
-    Source source{nullptr, std::filesystem::file_size(path, error), path.string()};
+    Source source{nullptr, nullptr, std::filesystem::file_size(path, error), path.string()};
     if (error) return failure(path, "cannot be read as an image", error.message());
     if (const auto claim = claim_of(head_of(path, source.bytes))) {
       if (Status s = check_claim(*claim, source.bytes, source.name); !s.ok()) return s;
     }
-    const OIIO::ImageSpec config = input_settings();
-    source.input = OIIO::ImageInput::open(source.name, &config);
+    open_file(source);
     if (!source.input) return failure(path, "cannot be read as an image", OIIO::geterror());
     Result<Image<T>> image = read_pixels<T>(source);
+    if (image.ok()) divide_by_alpha(*source.input, *image);
     if (!image.ok() || !may_be_multiplied(*source.input)) return image;
     const Result<std::vector<std::uint8_t>> file = whole_file(source);
     if (!file.ok()) return file.status();
@@ -284,7 +324,7 @@ Result<Image8> decode(std::span<const std::uint8_t> bytes, const std::string& na
     if (const auto claim = claim_of(bytes)) {
       if (Status s = check_claim(*claim, bytes.size(), name); !s.ok()) return s;
     }
-    Source source{open_bytes(memory, extension), bytes.size(), name};
+    Source source{nullptr, open_bytes(memory, extension), bytes.size(), name};
     if (!source.input) return failure(name, "cannot be read as an image", OIIO::geterror());
     Result<Image8> image = read_pixels<std::uint8_t>(source);
     if (!image.ok() || !may_be_multiplied(*source.input)) return image;

@@ -3,8 +3,10 @@
 
 #include <algorithm>
 #include <cstdlib>
+#include <filesystem>
 #include <string>
 #include <string_view>
+#include <utility>
 
 #include "libatlas/image/image_io.h"
 #include "libatlas/image/webp_alpha.h"
@@ -49,8 +51,10 @@ std::string tga() {
   return header + little(kSide, 2) + little(kSide, 2) + "\x20\x28" + rows("bgra");
 }
 
-std::string tiff() {
-  constexpr int kEntries = 10, kUnassociated = 2;
+constexpr int kAssociated = 1, kUnassociated = 2;  // what a TIFF says of its alpha
+
+std::string tiff(int alpha = kUnassociated, const std::string& texels = rows("rgba")) {
+  constexpr int kEntries = 10;
   const std::uint32_t data = 8 + 2 + 12 * kEntries + 4;
   const auto entry = [](int tag, int type, int count, std::uint32_t value) {
     return little(std::uint32_t(tag), 2) + little(std::uint32_t(type), 2) +
@@ -62,8 +66,8 @@ std::string tiff() {
          entry(258, kShort, 4, data) +  // bits of the channels
          entry(259, kShort, 1, 1) + entry(262, kShort, 1, 2) + entry(273, kLong, 1, data + 8) +
          entry(277, kShort, 1, 4) + entry(278, kLong, 1, kSide) +
-         entry(279, kLong, 1, 4 * kSide * kSide) + entry(338, kShort, 1, kUnassociated) +
-         little(0, 4) + little(8, 2) + little(8, 2) + little(8, 2) + little(8, 2) + rows("rgba");
+         entry(279, kLong, 1, 4 * kSide * kSide) + entry(338, kShort, 1, std::uint32_t(alpha)) +
+         little(0, 4) + little(8, 2) + little(8, 2) + little(8, 2) + little(8, 2) + texels;
 }
 
 std::string bytes_of(std::string_view hex) {
@@ -125,6 +129,50 @@ TEST(Alpha, ColoursAreThoseOfTheFileInEveryFormat) {
     ASSERT_TRUE(decoded.ok()) << decoded.status().message();
     EXPECT_EQ(decoded->texels, read->texels) << name;
   }
+}
+
+// Colours of a TIFF may be stored multiplied by alpha. Rounding has left little of those whose
+// alpha is small, and nothing where it is 0.
+TEST(Alpha, ColoursOfATiffAreNotMultipliedByIt) {
+  const TempFolder folder;
+  std::string texels = rows("rgba");
+  for (std::size_t i = 0; i < texels.size(); ++i)
+    if (const int alpha = std::uint8_t(texels[i / 4 * 4 + 3]); i % 4 != 3)
+      texels[i] = char((std::uint8_t(texels[i]) * alpha + 127) / 255);
+  folder.write("a.tif", tiff(kAssociated, texels));
+  const auto read = read_image8(folder / "a.tif");
+  const auto floats = read_image_float(folder / "a.tif");
+  ASSERT_TRUE(read.ok() && floats.ok());
+  const Image8 wanted = expected();
+  ASSERT_EQ(read->texels.size(), wanted.texels.size());
+  for (std::size_t i = 0; i < wanted.texels.size(); ++i) {
+    const int alpha = wanted.texels[i / 4 * 4 + 3];
+    if (alpha < 60) continue;
+    ASSERT_NEAR(read->texels[i], wanted.texels[i], 128 / alpha) << i;
+    ASSERT_NEAR(floats->texels[i], wanted.texels[i] / 255.0, 0.51 / alpha) << i;
+  }
+}
+
+// OpenImageIO takes what follows a '?' in a name for options.
+TEST(Alpha, NamesMayHoldQuestionMarks) {
+  const TempFolder folder;
+  std::filesystem::create_directory(folder / "why?a=b");
+  ASSERT_TRUE(write_png(folder / "why?a=b" / "a?.png", expected(), {}).ok());
+  const std::string png = TempFolder::read(folder / "why?a=b" / "a?.png");
+  const std::pair<const char*, std::string> files[] = {
+      {"b?c=d.png", png}, {"t?.tif", tiff()}, {"t?.tga", tga()}, {"w?.webp", bytes_of(kLossless)}};
+  for (const auto& [name, bytes] : files) {
+    folder.write(name, bytes);
+    const auto read = read_image8(folder / name);
+    ASSERT_TRUE(read.ok()) << read.status().message();
+    expect_texels(*read, 0, name);
+  }
+  const auto read = read_image8(folder / "why?a=b" / "a?.png");
+  ASSERT_TRUE(read.ok()) << read.status().message();
+  folder.write("no?.png", png.substr(0, 60));
+  const auto cut = read_image8(folder / "no?.png");
+  ASSERT_FALSE(cut.ok());
+  EXPECT_NE(cut.status().message().find("no?.png"), std::string::npos) << cut.status().message();
 }
 
 // A file that ends anywhere, and chunks that claim to be longer than the file.
