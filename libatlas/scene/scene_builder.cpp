@@ -89,6 +89,12 @@ Status SceneBuilder::place_positions(Scene& scene) {
                         "(export it in a smaller unit)",
                         file, diagonal)};
   }
+  if (diagonal > double(std::numeric_limits<float>::max())) {
+    return {ErrorCode::unsupported,
+            fmt::format("{}: the scene is {:g} units across, too large for single-precision floats "
+                        "(export it in a larger unit, and without stray vertices)",
+                        file, diagonal)};
+  }
   const Frame frame = choose_frame(from);
   scene.origin = frame.origin;
   scene.positions.resize(positions.size());

@@ -157,6 +157,21 @@ TEST(Obj, ScenesTooSmallForFloatsAreRefused) {
   EXPECT_EQ(code("1e-37"), ErrorCode::ok);
 }
 
+// Each coordinate is a float, but differences and distances are none.
+TEST(Obj, ScenesTooLargeForFloatsAreRefused) {
+  const TempFolder folder;
+  const auto status = [&](const std::string& s) {
+    return read_scene(folder.write("a.obj",
+                                   "v -" + s + " 0 0\nv " + s + " 0 0\nv 0 " + s + " 0\nf 1 2 3\n"),
+                      {}, {})
+        .status();
+  };
+  EXPECT_EQ(status("3e38").code(), ErrorCode::unsupported);
+  EXPECT_NE(status("3e38").message().find("too large for single-precision floats"),
+            std::string::npos);
+  EXPECT_EQ(status("1e38").code(), ErrorCode::ok);
+}
+
 TEST(Obj, BadElementsAreCountedAndNamed) {
   const TempFolder folder;
   const auto path = folder.write("bad.obj",
