@@ -9,7 +9,7 @@
 
 #include "benchmarks/stability/checks.h"
 #include "benchmarks/stability/stress.h"
-#include "libatlas/param/parameterize.h"
+#include "libatlas/param/flatten_disc.h"
 #include "libatlas/param/planar.h"
 
 namespace atlas::bench {
@@ -50,14 +50,14 @@ void check_cap(CheckList& list, double degrees) {
   const double angle = degrees * std::numbers::pi / 180, optimum = angle / std::sin(angle);
   const int rings = list.options.full ? 48 : 24;
   const Disc cap(test::cap(4 * rings, rings, angle));
-  ParamOptions options;
+  param::FlattenOptions options;
   options.method = ParamMethod::isometric;
   options.iterations = 20;
   options.max_stretch = 1.0001;  // cannot be reached, so that every step is used
   options.squeeze_iterations = 60;
   options.squeeze_ratio = true;
   ParamWorkspace workspace;
-  const ParamResult result = parameterize(cap.mesh(), options, workspace);
+  const ParamResult result = param::flatten_disc(cap.mesh(), options, workspace);
   std::vector<TriangleStretch> stretch(cap.triangles.size());
   measure_triangles(cap.mesh(), result.uvs, stretch);
   double greatest = 0, least = std::numeric_limits<double>::infinity();

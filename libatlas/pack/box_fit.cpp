@@ -100,7 +100,6 @@ bool BoxFit::pack_many(BoxLayout& layout) const {
   if (packed.unplaced > 0) return false;
   layout.placements = std::move(packed.placements);
   layout.pages = 1;
-  layout.moved = 0;
   return true;
 }
 
@@ -114,7 +113,6 @@ bool BoxFit::group(std::uint32_t pages, BoxLayout& layout) const {
 // Packs each group into its own page, largest items first. Items that find no room go to any page
 // that has some.
 bool BoxFit::pack_grouped(std::uint32_t pages, BoxLayout& layout) {
-  layout.moved = 0;
   layout.placements.assign(boxes_.size(), {});
   std::vector<FreeRects> open(pages, FreeRects(page_));
   std::vector<std::uint32_t> left;
@@ -126,7 +124,6 @@ bool BoxFit::pack_grouped(std::uint32_t pages, BoxLayout& layout) {
     bool placed = false;
     for (std::uint32_t p = 0; p < pages && !placed; ++p) placed = place(item, p, open[p], layout);
     if (!placed) return false;
-    ++layout.moved;
   }
   layout.pages = pages;
   return true;
@@ -181,9 +178,6 @@ bool BoxFit::pack_searched(std::uint32_t pages, BoxLayout& layout) {
 // Makes `found` the layout of the fit. Returns false if it lacks any box.
 bool BoxFit::keep(Layout found, BoxLayout& layout) const {
   if (found.unplaced > 0) return false;
-  layout.moved = 0;
-  for (std::size_t i = 0; i < boxes_.size(); ++i)
-    layout.moved += found.placements[i].page != layout.grouping.group[i];
   layout.placements = std::move(found.placements);
   layout.pages = found.pages;
   return true;

@@ -14,7 +14,6 @@ namespace atlas::pack {
 struct BoxLayout {
   std::vector<Placement> placements;  // one per item, in cells
   std::uint32_t pages = 0;
-  std::uint32_t moved = 0;
   GroupingResult grouping;
 };
 

@@ -21,17 +21,9 @@ std::size_t run_chains(std::vector<Chain>& chains, const SearchLimits& limits,
                        const Context& context, PackResult& result) {
   const double start = wall_seconds();
   std::size_t best = 0;
-  const auto note = [&] {
-    const auto cost = chains[best].cost();
-    if (!result.curve.empty() && result.curve.back().pages == cost.first &&
-        result.curve.back().used_height <= cost.second)
-      return;
-    result.curve.push_back({wall_seconds() - start, result.layouts_tried, cost.first, cost.second});
-  };
   const auto choose = [&] {
     for (std::size_t c = 0; c < chains.size(); ++c)
       if (chains[c].cost() < chains[best].cost()) best = c;
-    note();
   };
   choose();
   std::uint64_t per_round = 1, left = limits.layouts ? limits.layouts : UINT64_MAX;

@@ -67,13 +67,6 @@ struct FitOptions {
   double shapes_area = 0;
 };
 
-// A point of the curve of density against effort.
-struct FitProgress {
-  double seconds = 0;         // wall time since the start
-  std::uint64_t layouts = 0;  // layouts tried so far
-  double utilization = 0;
-};
-
 // The place of one chart. `box` is the chart's box in its page after rotation, padding included.
 // The content is the box without padding.
 // With boxes: content_width × content_height texels are the chart's scaled size before rotation,
@@ -107,18 +100,13 @@ struct FitResult {
   // shapes, as they are scaled, / area of the pages.
   bool boxes = false;
   double filled = 0;
-  double box_utilization = 0;  // area of the boxes with gutters / area of the pages; boxes only
   // The area of small holes and narrow bays in shapes in which no shape could lie, in square texels
   // at scale 1. Set for outlines only.
   double lost_area = 0;
-  GroupingResult grouping = {};   // the grouping of the box areas at the final scale
-  std::uint32_t moved_items = 0;  // number of items that did not fit their group's page
-  std::uint32_t packings = 0;     // number of full packings tried
+  GroupingResult grouping = {};  // the grouping of the box areas at the final scale
+  std::uint32_t packings = 0;    // number of full packings tried
   // Number of layouts of outlines on one page that were tried in total.
   std::uint64_t layouts = 0;
-  // (scale, whether it fitted), in the order tried.
-  std::vector<std::pair<double, bool>> trace = {};
-  std::vector<FitProgress> curve = {};  // the improvements, in the order found; may be empty
 };
 
 // Finds the largest common scale <= max_scale at which every item fits. At each scale it groups the

@@ -18,7 +18,6 @@ bool search_scale(BoxFit& fit, FitResult& result, BoxLayout& best) {
     BoxLayout layout;
     ++result.packings;
     const bool ok = fit.pack_at(scale, options.pages, layout);
-    result.trace.emplace_back(scale, ok);
     if (ok) {
       best = std::move(layout);
       result.scale = scale;
@@ -63,7 +62,7 @@ void finish(const BoxFit& fit, const FitOptions& options, BoxLayout& layout, Fit
     }
   }
   result.placements.resize(layout.placements.size());
-  double content = 0, boxes = 0;
+  double content = 0;
   for (std::size_t i = 0; i < result.placements.size(); ++i) {
     const Placement& at = layout.placements[i];
     Extent box = fit.boxes()[i];
@@ -77,13 +76,10 @@ void finish(const BoxFit& fit, const FitOptions& options, BoxLayout& layout, Fit
     out.angle = at.rotated ? std::acos(0.0) : 0;
     out.scale = result.scale;
     content += static_cast<double>(fit.contents()[i].area());
-    boxes += static_cast<double>(out.box.area());
     if (!options.power_of_two) enclose(out.box, options, result.pages[at.page]);
   }
   drop_empty_pages(result);
   result.utilization = share_of_pages(content, result);
-  result.box_utilization = share_of_pages(boxes, result);
-  result.moved_items = layout.moved;
   result.grouping = std::move(layout.grouping);
 }
 

@@ -72,7 +72,6 @@ class FreePage {
       if (context_.cancelled() || layout.height == 0) return std::nullopt;
       const double height = layout.height;
       const bool fits = height <= side_;
-      result.trace.emplace_back(scale, fits);
       context_.report("packing", double(++result.packings) / kMostLayouts);
       if (fits && layout.fill > best.fill) best = std::move(layout);
       if (fits && (scale >= most || height >= kNearlyFull * side_)) break;

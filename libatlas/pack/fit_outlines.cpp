@@ -25,7 +25,6 @@ bool search_scale(OutlineFit& fit, FitResult& result, OutlineLayout& best) {
     OutlineLayout layout;
     ++result.packings;
     const bool ok = fit.pack_at(scale, options.pages, layout);
-    result.trace.emplace_back(scale, ok);
     result.layouts += layout.layouts;
     if (ok && scale > best.scale) best = std::move(layout);
     context.report("packing", std::min(1.0, double(result.packings) / options.max_packings));
@@ -176,7 +175,6 @@ void write_result(const OutlineFit& fit, const FitOptions& options, OutlineLayou
   }
   drop_empty_pages(result);
   result.utilization = share_of_pages(shapes, result);
-  result.moved_items = best.moved;
   result.grouping = std::move(best.grouping);
 }
 

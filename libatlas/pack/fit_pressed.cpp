@@ -34,8 +34,6 @@ std::optional<FitResult> fit_pressed(const FitCharts& charts, const FitSearchOpt
   result.scale = pressed.scale;
   result.packings = 1;
   result.layouts = pressed.layouts;
-  result.trace.emplace_back(pressed.scale, true);
-  result.curve = std::move(pressed.curve);
   Extent page{options.page_size, options.page_size};
   if (options.free_aspect) {
     page = pressed.page;

@@ -316,14 +316,9 @@ std::optional<FitResult> press_pages(FitResult& fitted, const FitCharts& charts,
   FitResult result = fitted;
   result.scale = scale;
   ++result.packings;
-  result.trace.emplace_back(scale, true);
   press.write(result);
   double shapes = 0;
-  result.moved_items = 0;
-  for (std::size_t i = 0; i < charts.outlines.size(); ++i) {
-    shapes += charts.outlines[i].area * scale * scale;
-    result.moved_items += result.placements[i].page != result.grouping.group[i];
-  }
+  for (const ChartOutline& outline : charts.outlines) shapes += outline.area * scale * scale;
   result.utilization = share_of_pages(shapes, result);
   return result;
 }

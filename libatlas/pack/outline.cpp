@@ -7,7 +7,6 @@
 #include <functional>
 #include <numbers>
 
-#include "libatlas/core/clock.h"
 #include "libatlas/core/parallel.h"
 #include "libatlas/pack/nest.h"
 #include "libatlas/pack/shape_check.h"
@@ -153,7 +152,6 @@ Grid make_grid(std::size_t count, const OutlineOptions& o) {
 struct OnePage {
   Nest nest;
   std::uint64_t layouts_tried = 0;
-  double seconds = 0;
 };
 
 // Searches over plans on a single page. `best` runs a few chains, and the best result is returned.
@@ -173,7 +171,6 @@ OnePage search_one_page(std::span<const Piece> pieces, const Grid& grid, const O
     if (o.effort) s.layouts = std::max<std::uint64_t>(1, o.effort / chains);
   }
   std::vector<pack::NestSearchResult> found(chains);
-  const double begun = wall_seconds();
   pack::parallel_chains(context, chains, [&](std::size_t c) {
     pack::NestSearchOptions own = s;
     own.seed = s.seed * 0x10001 + c;
@@ -189,7 +186,6 @@ OnePage search_one_page(std::span<const Piece> pieces, const Grid& grid, const O
       best = c;
   }
   page.nest = std::move(found[best].nest);
-  page.seconds = wall_seconds() - begun;
   return page;
 }
 
@@ -269,8 +265,6 @@ Result<OutlineResult> pack_outlines(std::span<const ChartShape> shapes,
   if (one_page) {
     OnePage one = search_one_page(pieces, grid, options, context);
     result.layouts_tried = one.layouts_tried;
-    result.curve.push_back(
-        {one.seconds, one.layouts_tried, 1, std::int64_t{one.nest.used_height} * grid.cell});
     const bool fits = one.nest.left_over.empty() && one.nest.used_height <= grid.page.height;
     if (fits)
       nests.push_back(std::move(one.nest));

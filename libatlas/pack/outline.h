@@ -60,7 +60,6 @@ struct OutlineResult {
   double shape_area = 0;   // area of the placed shapes, in square texels of the page
   double utilization = 0;  // shape_area / area of the pages
   std::uint64_t layouts_tried = 0;
-  std::vector<PackProgress> curve = {};
 };
 
 // Places the shapes such that no two padded shapes share a cell. A cell belongs to a padded chart

@@ -218,7 +218,6 @@ bool OutlineFit::place_left_over(std::vector<std::uint32_t> left, std::vector<Bi
   std::stable_sort(left.begin(), left.end(), [&](std::uint32_t a, std::uint32_t b) {
     return layout.pieces[a].cells() > layout.pieces[b].cells();
   });
-  layout.moved = static_cast<std::uint32_t>(left.size());
   for (std::uint32_t i : left) {
     bool placed = false;
     for (std::uint32_t p = 0; p < open.size() && !placed; ++p) {

@@ -22,7 +22,6 @@ struct OutlineLayout {
   std::vector<std::uint32_t> page;  // one per piece
   std::vector<NestPlace> places;    // one per piece
   std::vector<Extent> page_sizes;   // in cells
-  std::uint32_t moved = 0;          // number of pieces that left their group's page
   std::uint64_t layouts = 0;        // layouts tried on all pages
   GroupingResult grouping;
 };

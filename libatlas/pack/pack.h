@@ -88,14 +88,6 @@ struct UnplacedItem {
   UnplacedReason reason = UnplacedReason::no_room;
 };
 
-// A point of the curve of density against effort.
-struct PackProgress {
-  double seconds = 0;         // wall time since the start
-  std::uint64_t layouts = 0;  // layouts tried so far
-  std::uint32_t pages = 0;
-  std::int64_t used_height = 0;  // used height of the last page
-};
-
 struct PackResult {
   std::vector<Placement> placements = {};   // one per item, in input order
   std::vector<Extent> pages = {};           // the size of every page used
@@ -105,7 +97,6 @@ struct PackResult {
   double fill_without_last = 0;  // the same without the last page; 1 if there is only one page
   std::uint32_t page_lower_bound = 0;  // no packing needs fewer pages than this
   std::uint64_t layouts_tried = 0;
-  std::vector<PackProgress> curve = {};  // the improvements, in the order in which they were found
 };
 
 // Packs the items into pages. The placements are in input order, and ties are broken by index. An

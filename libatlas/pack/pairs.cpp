@@ -2,8 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numbers>
+
+#include "libatlas/core/hull.h"
 
 namespace atlas::pack {
 namespace {
@@ -21,9 +22,6 @@ constexpr std::size_t kCandidates = 24;
 // its box by kPerfect is taken at once.
 constexpr double kGain = 1.15, kPerfect = 0.97;
 
-double cross(Vec2d a, Vec2d b) {
-  return a.x * b.y - a.y * b.x;
-}
 Vec2d minus(Vec2d a, Vec2d b) {
   return {a.x - b.x, a.y - b.y};
 }
@@ -32,47 +30,6 @@ Vec2d plus(Vec2d a, Vec2d b) {
 }
 
 using Points = std::vector<Vec2d>;
-
-// Replaces the points by the corners of their convex hull, counterclockwise (Andrew's monotone
-// chain).
-void to_hull(Points& points, Points& hull) {
-  std::sort(points.begin(), points.end(),
-            [](Vec2d a, Vec2d b) { return a.x < b.x || (a.x == b.x && a.y < b.y); });
-  hull.clear();
-  for (int side = 0; side < 2; ++side) {
-    const std::size_t start = hull.size();
-    for (const Vec2d p : points) {
-      while (hull.size() >= start + 2 &&
-             cross(minus(hull.back(), hull[hull.size() - 2]), minus(p, hull.back())) <= 0)
-        hull.pop_back();
-      hull.push_back(p);
-    }
-    hull.pop_back();
-    std::reverse(points.begin(), points.end());
-  }
-  points.swap(hull);
-}
-
-// Returns the area of the smallest rectangle around a convex polygon; one side of it contains an
-// edge.
-double smallest_box(const Points& hull) {
-  double least = std::numeric_limits<double>::infinity();
-  for (std::size_t i = 0; i < hull.size(); ++i) {
-    const Vec2d e = minus(hull[(i + 1) % hull.size()], hull[i]);
-    const double length = std::hypot(e.x, e.y);
-    if (!(length > 0)) continue;
-    double low = 0, high = 0, depth = 0;
-    for (const Vec2d p : hull) {
-      const Vec2d d = minus(p, hull[i]);
-      const double along = (d.x * e.x + d.y * e.y) / length;
-      low = std::min(low, along);
-      high = std::max(high, along);
-      depth = std::max(depth, cross(e, d) / length);
-    }
-    least = std::min(least, (high - low) * depth);
-  }
-  return least;
-}
 
 struct Edge {
   std::uint32_t from = 0;  // corner of the hull
@@ -90,21 +47,18 @@ struct Hull {
 // Returns whether the chart may be paired.
 bool make_hull(const ChartOutline& outline, Hull& hull, Points& scratch) {
   if (!outline.loose.empty() || outline.edges.empty() || !(outline.area > 0)) return false;
-  hull.corners.clear();
-  for (const ChartOutline::Edge& e : outline.edges) hull.corners.push_back(e.from);
-  to_hull(hull.corners, scratch);
+  scratch.clear();
+  for (const ChartOutline::Edge& e : outline.edges) scratch.push_back(e.from);
+  const double convex = hull_area(scratch, hull.corners);
   const std::size_t n = hull.corners.size();
   if (n < 3 || n > kMostCorners) return false;
-  double twice = 0;
   hull.edges.clear();
   for (std::uint32_t i = 0; i < n; ++i) {
-    const Vec2d a = hull.corners[i], b = hull.corners[(i + 1) % n];
-    twice += cross(minus(a, hull.corners[0]), minus(b, hull.corners[0]));
-    hull.edges.push_back({i, std::hypot(b.x - a.x, b.y - a.y)});
+    hull.edges.push_back({i, distance(hull.corners[i], hull.corners[(i + 1) % n])});
   }
   hull.area = outline.area;
-  hull.fill = outline.area / smallest_box(hull.corners);
-  if (!(hull.fill < kFullBox) || outline.area < kConvex * 0.5 * twice) return false;
+  hull.fill = outline.area / box_area(hull.corners);
+  if (!(hull.fill < kFullBox) || outline.area < kConvex * convex) return false;
   std::stable_sort(hull.edges.begin(), hull.edges.end(),
                    [](const Edge& a, const Edge& b) { return a.length > b.length; });
   hull.edges.resize(std::min(n, kEdges));
@@ -160,11 +114,11 @@ class Joiner {
       const Vec2d d = minus(p, pair.end_of_second);
       points_.push_back(plus(pair.end_of_first, {c * d.x - s * d.y, s * d.x + c * d.y}));
     }
-    to_hull(points_, scratch_);
-    return smallest_box(points_);
+    hull_area(points_, hull_);
+    return box_area(hull_);
   }
 
-  Points points_, scratch_;
+  Points points_, hull_;
 };
 
 Vec2d rotated(Vec2d p, double angle) {

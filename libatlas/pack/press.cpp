@@ -49,7 +49,7 @@ class Press {
     const double begun = wall_seconds();
     while (!context_.cancelled()) {
       draw(best);
-      const double done = book_round(options_, wall_seconds() - begun, fill(best), best);
+      const double done = spent_share(options_, wall_seconds() - begun, best);
       if (alone()) break;
       if (options_.preset == PackPreset::best) {
         if (!(done < 1)) break;
@@ -234,9 +234,7 @@ PressedPage begun_page(const FitSearchOptions& options, std::uint32_t draws) {
   return page;
 }
 
-double book_round(const FitOptions& options, double seconds, double use, PressedPage& best) {
-  if (best.scale > 0 && (best.curve.empty() || best.curve.back().utilization < use))
-    best.curve.push_back({seconds, best.layouts, use});
+double spent_share(const FitOptions& options, double seconds, const PressedPage& best) {
   if (options.effort == 0) return seconds / options.time_budget;
   // 1250 layouts of 60 triangles of one size, which all fit nearly everywhere, took 3.5 s: each
   // examines 2 million words on a page of 512 cells a side. Such a layout counts as several.

@@ -33,7 +33,6 @@ struct PressedPage {
   // pressed.
   std::vector<SettleTarget> targets;
   double target_scale = 0;
-  std::vector<FitProgress> curve;
   // The number of layouts tried, and of words examined, to find the layouts from which pressing
   // starts.
   std::uint64_t layouts = 0, work = 0;
@@ -44,10 +43,9 @@ struct PressedPage {
 // which are the most that `standard` makes, if it has been there already.
 PressedPage begun_page(const FitSearchOptions& options, std::uint32_t draws);
 
-// Records a round of a search that has found `best` after this many seconds. `use` is the share of
-// the page that it fills. If this is more than before, a point is added to the curve. Returns the
-// share of the effort, or of the time, that has been spent.
-double book_round(const FitOptions& options, double seconds, double use, PressedPage& best);
+// Returns the share of the effort, or of the time, that a search has spent which found `best` after
+// this many seconds.
+double spent_share(const FitOptions& options, double seconds, const PressedPage& best);
 
 // Returns whether press_outlines is suitable: there is one page of at least 256 texels a side, the
 // preset is not `fast`, the charts are few, specks aside (specks.h), and may be turned by any

@@ -66,7 +66,6 @@ class StripSearch {
   const SearchLimits& limits_;
   const Context& context_;
   PackResult& result_;
-  const double begun_ = wall_seconds();
   std::int64_t bound_ = 0;  // no layout is lower than this, or has to be
   std::int64_t height_ = INT64_MAX;
   std::vector<GapPlacement> placed_;  // the lowest layout found so far
@@ -130,11 +129,7 @@ std::vector<GapPlacement> StripSearch::anneal(const Problem& problem, const Star
     chains.emplace_back(problem, bound_, limits.seed * 0x10001 + c);
     chains.back().start(start.sequence);
   }
-  const double waited = wall_seconds() - begun_;
-  const std::size_t noted = result_.curve.size();
-  const std::size_t best = run_chains(chains, limits, context_, result_);
-  for (std::size_t k = noted; k < result_.curve.size(); ++k) result_.curve[k].seconds += waited;
-  return chains[best].best();
+  return chains[run_chains(chains, limits, context_, result_)].best();
 }
 
 // Gap filling has no rule that lays long items down, since an open strip has room for them to
@@ -207,11 +202,7 @@ void StripSearch::search_beams() {
     if (left < states * beams.size()) return;
     left -= states * beams.size();
     result_.layouts_tried += states * beams.size();
-    if (!run_beams(beams, {static_cast<std::int32_t>(height_ - 1), states, 0, stop})) {
-      states *= 2;
-      continue;
-    }
-    result_.curve.push_back({wall_seconds() - begun_, result_.layouts_tried, 1, height_});
+    if (!run_beams(beams, {static_cast<std::int32_t>(height_ - 1), states, 0, stop})) states *= 2;
   }
 }
 

@@ -145,7 +145,7 @@ class StraightPage {
         best.work += s.work;
       }
       slide_fullest(starts, best);
-      const double done = book_round(options_, wall_seconds() - begun, fill(best), best);
+      const double done = spent_share(options_, wall_seconds() - begun, best);
       if (options_.preset != PackPreset::best) break;
       if (!(done < 1) || in_vain(round, before, best)) break;
       context_.report("packing", done);

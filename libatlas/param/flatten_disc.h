@@ -20,6 +20,10 @@ struct FlattenOptions : ParamOptions {
   bool local = false;
   // No face is flat: when the whole is squeezed, each triangle may give way as far as it helps.
   bool rough = false;
+  // The scale at which squeezing measures. false: the area-preserving one, as for the bound. true:
+  // the one that suits best, so that the ratio of the largest to the smallest singular value falls.
+  // For comparison with closed forms.
+  bool squeeze_ratio = false;
   // Borders that can be moved apart only beyond max_stretch are left crossing within it, for
   // callers that can remove triangles there.
   bool leave_crossings = false;

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "libatlas/core/bounds.h"
+#include "libatlas/core/hull.h"
 #include "libatlas/core/predicates.h"
 #include "libatlas/param/border_check.h"
 #include "libatlas/param/halfedges.h"
@@ -47,27 +48,21 @@ bool corners_overlap(const Edge& e, const Edge& f) {
   return points_inside(e, f.b) || points_inside(f, e.b);
 }
 
-double distance(glm::dvec2 p, glm::dvec2 a, glm::dvec2 b) {
-  const glm::dvec2 d = b - a;
-  const double squared = glm::dot(d, d);
-  const double t = squared > 0 ? std::clamp(glm::dot(p - a, d) / squared, 0.0, 1.0) : 0;
-  return glm::length(p - a - t * d);
-}
-
 // Returns the distance of two edges that do not cross. If they share a vertex, this is the distance
 // of the shorter one's other end from the longer one: a smaller displacement cannot flip the
 // corner.
 double gap(const Edge& e, const Edge& f) {
-  const glm::dvec2 ea = to_glm(e.a), eb = to_glm(e.b), fa = to_glm(f.a), fb = to_glm(f.b);
+  const auto squared = squared_distance_to_segment;
   const bool shared = e.to == f.from || f.to == e.from;
   if (!shared) {
-    return std::min(
-        {distance(ea, fa, fb), distance(eb, fa, fb), distance(fa, ea, eb), distance(fb, ea, eb)});
+    return std::sqrt(std::min({squared(e.a, f.a, f.b), squared(e.b, f.a, f.b),
+                               squared(f.a, e.a, e.b), squared(f.b, e.a, e.b)}));
   }
-  const bool e_shorter = glm::dot(eb - ea, eb - ea) < glm::dot(fb - fa, fb - fa);
+  const glm::dvec2 along_e = to_glm(e.b) - to_glm(e.a), along_f = to_glm(f.b) - to_glm(f.a);
+  const bool e_shorter = glm::dot(along_e, along_e) < glm::dot(along_f, along_f);
   const bool forward = e.to == f.from;  // e is followed by f
-  if (e_shorter) return distance(forward ? ea : eb, fa, fb);
-  return distance(forward ? fb : fa, ea, eb);
+  return std::sqrt(e_shorter ? squared(forward ? e.a : e.b, f.a, f.b)
+                             : squared(forward ? f.b : f.a, e.a, e.b));
 }
 
 // A box that lies along its edges.

@@ -26,9 +26,6 @@ struct ParamOptions {
   IsometricStart start = {};    // what the isometric solver starts from
   int iterations = 3;           // local/global steps before the bound is checked
   int squeeze_iterations = 12;  // most reweighted steps, if the bound is missed
-  // The scale at which squeezing measures. false: the area-preserving one, as for the bound. true:
-  // the one that suits best, so that the ratio of the largest to the smallest singular value falls.
-  bool squeeze_ratio = false;
   // Triangles keep at least this altitude (uv units) where possible, so that they stay positive
   // when the result is rounded for output.
   double min_altitude = 0;

@@ -2,32 +2,11 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <utility>
 
 #include "libatlas/uvs/round_uvs.h"
 
 namespace atlas {
-
-std::vector<Vec2d> page_uvs(const PlacedCharts& placed) {
-  const ChartSet& set = placed.charts;
-  std::vector<Vec2d> uvs(set.uvs.size());
-  for (const ChartPlacement& placement : placed.placements) {
-    const Chart& chart = set.charts[placement.chart];
-    const Extent page = placed.pages[std::size_t(placement.page)];
-    for (std::uint32_t i = chart.first_uv; i < chart.first_uv + chart.uv_count; ++i) {
-      const Vec2d texel = page_texel(placement, set.uvs[i]);
-      uvs[i] = {texel.x / page.width, texel.y / page.height};
-    }
-  }
-  return uvs;
-}
-
-double texel_of_longest(std::span<const Extent> pages) {
-  std::int32_t longest = 1;
-  for (const Extent& page : pages) longest = std::max({longest, page.width, page.height});
-  return 1.0 / longest;
-}
 
 AssembledWorld assemble_world(const Scene& scene, const PlacedCharts& placed, const WorldMesh& mesh,
                               bool baked) {

@@ -3,34 +3,15 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <span>
 #include <string>
-#include <vector>
 
-#include "libatlas/bake/placement.h"
 #include "libatlas/charts/charted_mesh.h"
 #include "libatlas/charts/charts.h"
 #include "libatlas/exporters/world.h"
-#include "libatlas/pack/pack.h"
 #include "libatlas/scene/scene.h"
+#include "libatlas/uvs/page_uvs.h"
 
 namespace atlas {
-
-// Together these say where a chart's uv lies on its page. Every placement names a chart of the set
-// and one of the pages.
-struct PlacedCharts {
-  const ChartSet& charts;
-  std::span<const ChartPlacement> placements;  // one per chart
-  std::span<const Extent> pages;
-};
-
-// Returns where each uv of the charts lies on its chart's page, as a fraction of the page's sides
-// (origin bottom left). The values are not rounded yet, see round_uvs.h.
-std::vector<Vec2d> page_uvs(const PlacedCharts& placed);
-
-// Returns a texel of the longest page, as a share of that page: how far rounding may move uvs of
-// baked pages (round_uvs.h).
-double texel_of_longest(std::span<const Extent> pages);
 
 struct AssembledWorld {
   World world;

@@ -12,9 +12,10 @@
 
 #include "libatlas/core/no_index.h"
 #include "libatlas/pipeline/assemble_world.h"
-#include "libatlas/pipeline/draw_once.h"
 #include "libatlas/pipeline/fill_pages.h"
 #include "libatlas/pipeline/part_gaps.h"
+#include "libatlas/uvs/draw_once.h"
+#include "libatlas/uvs/page_uvs.h"
 #include "libatlas/uvs/round_uvs.h"
 
 namespace atlas {

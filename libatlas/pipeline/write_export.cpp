@@ -11,10 +11,10 @@
 #include "libatlas/exporters/viewpoint.h"
 #include "libatlas/exporters/world.h"
 #include "libatlas/pipeline/assemble_world.h"
-#include "libatlas/pipeline/draw_once.h"
 #include "libatlas/pipeline/export_world.h"
 #include "libatlas/scene/uv_page.h"
 #include "libatlas/sheets/one_sided.h"
+#include "libatlas/uvs/draw_once.h"
 
 namespace atlas {
 namespace {

@@ -3,84 +3,16 @@
 
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <cmath>
-#include <cstring>
 
 #include "libatlas/scene/formats.h"
 #include "libatlas/scene/ply_header.h"
 #include "libatlas/scene/ply_losses.h"
-#include "libatlas/scene/text_scanner.h"
+#include "libatlas/scene/ply_numbers.h"
 
 namespace atlas {
 namespace fs = std::filesystem;
 namespace {
-
-// Reads numbers one after the other, whatever the format. A double holds every type exactly.
-class Numbers {
- public:
-  Numbers(const FileBytes& bytes, const PlyHeader& header)
-      : format_(header.format),
-        at_(bytes.begin() + header.bytes),
-        end_(bytes.end()),
-        scan_(at_, end_),
-        first_line_(header.lines) {}
-
-  std::size_t bytes_left() const {
-    return static_cast<std::size_t>(end_ - (format_ == PlyFormat::ascii ? scan_.position() : at_));
-  }
-  // Returns whether nothing but blanks and line ends follows.
-  bool at_end() const {
-    if (format_ != PlyFormat::ascii) return bytes_left() == 0;
-    TextScanner ahead = scan_;
-    while (!ahead.at_end() && ahead.at_line_end()) ahead.next_line();
-    return ahead.at_end();
-  }
-  std::uint32_t line() const { return first_line_ + scan_.line() + 1; }  // ascii only
-
-  void begin_element() {
-    if (format_ != PlyFormat::ascii) return;
-    while (!scan_.at_end() && scan_.at_line_end()) scan_.next_line();
-  }
-  void end_element() {
-    if (format_ == PlyFormat::ascii) scan_.next_line();
-  }
-
-  bool next(PlyType type, double& value) {
-    if (format_ == PlyFormat::ascii) return scan_.number(value);
-    const std::size_t size = ply_size(type);
-    if (static_cast<std::size_t>(end_ - at_) < size) return false;
-    std::uint64_t bits = 0;
-    std::memcpy(&bits, at_, size);
-    if (format_ == PlyFormat::big) bits = __builtin_bswap64(bits) >> (64 - 8 * size);
-    value = interpret(bits, type);
-    at_ += size;
-    return true;
-  }
-
- private:
-  static double interpret(std::uint64_t bits, PlyType type) {
-    switch (type) {
-      case PlyType::i8:
-        return static_cast<std::int8_t>(bits);
-      case PlyType::i16:
-        return static_cast<std::int16_t>(bits);
-      case PlyType::i32:
-        return static_cast<std::int32_t>(bits);
-      case PlyType::f32:
-        return std::bit_cast<float>(static_cast<std::uint32_t>(bits));
-      case PlyType::f64:
-        return std::bit_cast<double>(bits);
-      default:
-        return static_cast<double>(bits);
-    }
-  }
-
-  PlyFormat format_;
-  const char *at_, *end_;
-  TextScanner scan_;
-  std::uint32_t first_line_;
-};
 
 // Unsigned bytes and words are fractions of their largest value; other numbers are values.
 double colour_scale(PlyType type) {
@@ -399,7 +331,7 @@ class PlyParser {
   }
 
   const PlyHeader& header_;
-  Numbers numbers_;
+  PlyNumbers numbers_;
   SceneBuilder& builder_;
   const PlyElement* element_ = nullptr;
   std::uint64_t index_ = 0;

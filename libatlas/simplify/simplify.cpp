@@ -9,7 +9,6 @@
 #include <numbers>
 #include <optional>
 
-#include "libatlas/core/clock.h"
 #include "libatlas/core/glm_bridge.h"
 #include "libatlas/core/parallel.h"
 #include "libatlas/simplify/border_chains.h"
@@ -246,7 +245,6 @@ void Run::collect() {
 }
 
 Result<SimplifiedMesh> Run::operator()() {
-  const double start = own_cpu_seconds();
   context_.report("simplify", 0);
   out_.triangles_in = geometry_.mesh->indices.size() / 3;
   build_charts();
@@ -257,7 +255,6 @@ Result<SimplifiedMesh> Run::operator()() {
   if (context_.cancelled()) return Status::cancelled();
   collect();
   if (context_.cancelled()) return Status::cancelled();
-  out_.cpu_seconds = own_cpu_seconds() - start;
   context_.report("simplify", 1);
   return std::move(out_);
 }

@@ -35,9 +35,9 @@ struct SimplifiedMesh {
   std::vector<std::uint32_t> indices = {};         // 3 a triangle, into MeshView::positions
   std::vector<std::uint32_t> uv_indices = {};      // 3 a triangle, into ChartSet::uvs
   std::vector<std::uint32_t> triangle_chart = {};  // 1 a triangle, ascending
-  // 1 a triangle: an input triangle of the same chart,.
+  // 1 a triangle: an input triangle of the same chart, within it or beside it. It gives the
+  // material.
   std::vector<std::uint32_t> source_triangle = {};
-  // within it or beside it (gives the material)
   std::uint64_t triangles_in = 0, triangles_out = 0;
   double max_slip_texels = 0;   // an upper bound of the slip anywhere, <= the option
   double max_turn_degrees = 0;  // an upper bound of the turn anywhere, <= the option
@@ -45,7 +45,6 @@ struct SimplifiedMesh {
   // it, and otherwise kept, because a hole might open. Triangles with two equal corners are
   // dropped.
   std::uint64_t degenerate_in = 0, degenerate_kept = 0, degenerate_dropped = 0;
-  double cpu_seconds = 0;  // all threads
 };
 
 // What is simplified. The data must exist until the call returns.

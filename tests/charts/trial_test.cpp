@@ -6,7 +6,6 @@
 #include <numeric>
 #include <set>
 
-#include "libatlas/charts/geometry/hull.h"
 #include "libatlas/charts/merging/coarse.h"
 #include "libatlas/charts/merging/cost_classes.h"
 #include "libatlas/charts/merging/fan_measure.h"
@@ -15,6 +14,7 @@
 #include "libatlas/charts/merging/trial.h"
 #include "libatlas/charts/mesh/topology.h"
 #include "libatlas/core/glm_bridge.h"
+#include "libatlas/core/hull.h"
 #include "libatlas/param/distortion.h"
 #include "libatlas/param/isometric.h"
 #include "tests/charts/chart_checks.h"

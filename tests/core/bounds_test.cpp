@@ -2,8 +2,11 @@
 
 #include <gtest/gtest.h>
 
+#include <cstdint>
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
+
+#include "libatlas/core/rect.h"
 
 namespace atlas {
 namespace {
@@ -31,6 +34,13 @@ TEST(Bounds, WithoutPointsMeetNothing) {
   EXPECT_FALSE(none.meets(large));
   EXPECT_FALSE(large.meets(none, 1));
   EXPECT_FALSE(none.meets(none));
+}
+
+TEST(Rect, Edges) {
+  const Rect r{-2, 3, 65536, 65536};
+  EXPECT_EQ(r.right(), 65534);
+  EXPECT_EQ(r.top(), 65539);
+  EXPECT_EQ(r.area(), std::int64_t{1} << 32);
 }
 
 }  // namespace

@@ -1,4 +1,5 @@
-// Loops over threads beyond what core_test.cpp holds of them, progress, and clocks.
+// Loops over threads beyond what parallel_test.cpp and claims_test.cpp hold of them, progress, and
+// clocks.
 #include <gtest/gtest.h>
 #include <time.h>
 #include <unistd.h>
@@ -171,6 +172,15 @@ TEST(Clock, AStopwatchMeasuresFromLapToLap) {
   EXPECT_EQ(watch.lap(), 0);
   told_time = 13;
   EXPECT_EQ(watch.lap(), 0.5);
+}
+
+TEST(Clock, MovesForward) {
+  const double wall = wall_seconds(), cpu = cpu_seconds();
+  volatile double sum = 0;
+  while (cpu_seconds() - cpu < 0.02) sum = sum + 1;
+  EXPECT_GE(wall_seconds() - wall, 0.005);
+  EXPECT_GT(peak_memory(), 1 << 20);
+  EXPECT_LT(peak_memory(), std::int64_t{1} << 40);
 }
 
 }  // namespace

@@ -10,9 +10,7 @@
 #include "libatlas/scene/uv_page.h"
 #include "tests/exporters/gltf_layout.h"
 #include "tests/exporters/kept_gltf.h"
-#include "tests/scene/draco_gltf.h"
 #include "tests/scene/gltf_maker.h"
-#include "tests/scene/packed_gltf.h"
 #include "tests/scene/temp_folder.h"
 #include "tests/support/gltf_oracle.h"
 
@@ -313,137 +311,6 @@ TEST(KeptGltf, StandsWhereItStoodWithTheNewUvsAtItsCorners) {
       EXPECT_EQ(uvs[2 * c + 1], double(k) / 32);
     }
   }
-}
-
-TEST(KeptGltf, TheNewUvsTakeTheFirstFreeSet) {
-  const struct {
-    std::vector<int> sets;
-    const char* expected;
-  } cases[] = {{{}, "TEXCOORD_1"},
-               {{0}, "TEXCOORD_1"},
-               {{0, 1}, "TEXCOORD_2"},
-               {{7}, "TEXCOORD_1"},
-               {{0, 1, 2, 4}, "TEXCOORD_3"}};
-  for (const auto& c : cases) {
-    const TempFolder folder;
-    Gltf gltf;
-    json attributes = {{"POSITION", gltf.floats({0, 0, 0, 1, 0, 0, 0, 1, 0}, "VEC3", 3)}};
-    for (const int set : c.sets)
-      attributes["TEXCOORD_" + std::to_string(set)] =
-          gltf.floats({0, 0, 1, 0, 0, float(set)}, "VEC2", 2);
-    gltf.single({{"attributes", attributes}});
-    const path input = folder.write("s.glb", gltf.glb());
-    EXPECT_EQ(keep(input, folder / "w.glb").uv_set, c.expected);
-    const auto triangles = GltfOracle(folder / "w.glb").triangles();
-    ASSERT_EQ(triangles.size(), 1u);
-    const auto& after = triangles[0].attributes;
-    for (const int set : c.sets) EXPECT_EQ(after.at("TEXCOORD_" + std::to_string(set))[5], set);
-    EXPECT_EQ(after.at(c.expected)[2], 1.0 / 64);
-    EXPECT_TRUE(after.contains("TEXCOORD_0"));
-  }
-}
-
-// Writes TEXCOORD_`set` in place of what a triangle with these sets has, and checks both. Every set
-// holds its own number.
-void expect_replaced(const std::vector<int>& sets, int set) {
-  const TempFolder folder;
-  Gltf gltf = textured(folder);
-  json& primitive = gltf.j["meshes"][0]["primitives"][0];
-  for (const int own : sets)
-    primitive["attributes"]["TEXCOORD_" + std::to_string(own)] =
-        gltf.floats({0, 0, 1, 0, 0, float(own)}, "VEC2", 2);
-  gltf.j["materials"][0]["occlusionTexture"] = {{"index", 0}, {"texCoord", sets.back()}};
-  const auto loaded = read_scene(folder.write("s.glb", gltf.glb()), kGltfRest, {});
-  ASSERT_TRUE(loaded.ok()) << loaded.status().message();
-  World world = world_of(loaded->scene);
-  world.uv_set = set;
-  const auto written = write_kept(world, folder / "w.glb");
-  ASSERT_TRUE(written.ok()) << written.status().message();
-  EXPECT_EQ(written->uv_set, "TEXCOORD_" + std::to_string(set));
-  EXPECT_TRUE(written->not_kept.empty());
-  const auto triangles = GltfOracle(folder / "w.glb").triangles();
-  ASSERT_EQ(triangles.size(), 1u);
-  const auto& after = triangles[0].attributes;
-  for (const int own : sets) {
-    if (own != set) {
-      EXPECT_EQ(after.at("TEXCOORD_" + std::to_string(own))[5], own);
-    }
-  }
-  EXPECT_EQ(after.at(written->uv_set)[2], 1.0 / 64);
-  EXPECT_FALSE(after.contains("TEXCOORD_" + std::to_string(std::max(set, sets.back()) + 1)));
-}
-
-TEST(KeptGltf, TheNewUvsReplaceTheSetThatIsAskedFor) {
-  expect_replaced({0, 1}, 1);
-  expect_replaced({0, 1, 2}, 1);
-  expect_replaced({0, 1, 2}, 2);
-  expect_replaced({0, 1}, 3);
-}
-
-// The file that is written holds plain data, and so does not need the extension.
-TEST(KeptGltf, OfCompressedDataIsPlain) {
-  const TempFolder folder;
-  const Grid grid;
-  PackedGltf gltf = packed_grid();
-  gltf.j["animations"] = json::array(
-      {{{"samplers",
-         {{{"input", gltf.floats({0, 1}, "SCALAR", 1)},
-           {"output", gltf.packed_positions({0, 0, 0, 5, 6, 7}, 0)}}}},
-        {"channels", {{{"sampler", 0}, {"target", {{"node", 0}, {"path", "translation"}}}}}}}});
-  const WorldFile written = keep(folder.write("packed.glb", gltf.glb()), folder / "kept.glb");
-  EXPECT_EQ(written.not_kept, std::vector<std::string>{});
-  const GltfOracle after(folder / "kept.glb");
-  EXPECT_EQ(after.document.dump().find(kMeshopt), std::string::npos);
-  const std::vector<OracleTriangle> triangles = after.triangles();
-  ASSERT_EQ(3 * triangles.size(), grid.indices.size());
-  // The codec may begin a triangle at another corner, so the sums of its corners are compared.
-  for (std::size_t t = 0; t < triangles.size(); ++t) {
-    const std::vector<double>& p = triangles[t].attributes.at("POSITION");
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      double wanted = 0;
-      for (std::size_t c = 0; c < 3; ++c)
-        wanted += double(grid.positions[3 * grid.indices[3 * t + c] + axis]);
-      EXPECT_NEAR(p[axis] + p[3 + axis] + p[6 + axis], wanted, 1e-9) << t;
-    }
-  }
-  const json& sampler = after.document["animations"][0]["samplers"][0];
-  EXPECT_EQ(after.values(sampler["output"]), (std::vector<double>{0, 0, 0, 5, 6, 7}));
-}
-
-// So it is for a mesh that Draco has compressed, also one that is not shown and so copied as it is.
-TEST(KeptGltf, OfDracoIsPlain) {
-  const TempFolder folder;
-  const std::vector<std::uint8_t> bytes{1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12};
-  DracoSource source;
-  source.indices = {0, 1, 2, 0, 2, 3};
-  source.points = 4;
-  source.attributes = {{draco::GeometryAttribute::POSITION, 3, draco::DT_FLOAT32, kSquare.data()},
-                       {draco::GeometryAttribute::COLOR, 3, draco::DT_UINT8, bytes.data()}};
-  DracoGltf gltf;
-  const auto add = [&] {
-    const int positions = gltf.promised(4, "VEC3"), heat = gltf.promised(4, "VEC3", 5121);
-    return gltf.primitive(source, {{"POSITION", positions}, {"_HEAT", heat}});
-  };
-  gltf.single(add());
-  gltf.j["meshes"].push_back({{"primitives", json::array({add()})}});
-  gltf.j["nodes"].push_back({{"mesh", 1}});
-  const WorldFile written = keep(folder.write("packed.glb", gltf.glb()), folder / "kept.glb");
-  EXPECT_EQ(written.not_kept,
-            (std::vector<std::string>{"1 x meshes that are not shown and get no new uvs"}));
-  const GltfOracle after(folder / "kept.glb");
-  EXPECT_EQ(after.document.dump().find(kDraco), std::string::npos);
-  const std::vector<OracleTriangle> triangles = after.triangles();
-  ASSERT_EQ(triangles.size(), 2u);
-  EXPECT_EQ(triangles[1].attributes.at("POSITION"),
-            (std::vector<double>{0, 0, 0, 1, 1, 0, 0, 1, 0}));
-  EXPECT_EQ(triangles[1].attributes.at("_HEAT"),
-            (std::vector<double>{1, 2, 3, 7, 8, 9, 10, 11, 12}));
-  const json& hidden = after.document["meshes"][1]["primitives"][0];
-  EXPECT_EQ(after.values(hidden["indices"]), (std::vector<double>{0, 1, 2, 0, 2, 3}));
-  EXPECT_EQ(after.values(hidden["attributes"]["POSITION"]),
-            std::vector<double>(kSquare.begin(), kSquare.end()));
-  EXPECT_EQ(after.values(hidden["attributes"]["_HEAT"]),
-            std::vector<double>(bytes.begin(), bytes.end()));
 }
 
 }  // namespace

@@ -10,7 +10,6 @@
 #include "tests/exporters/vrml_parser.h"
 #include "tests/exporters/worlds.h"
 #include "tests/scene/temp_folder.h"
-#include "tests/support/full_disk.h"
 
 namespace atlas {
 namespace {
@@ -395,26 +394,6 @@ TEST(Vrml, FailuresLeaveNothingBehind) {
   context.cancel = &raised;
   EXPECT_EQ(status(good, folder / "a.wrl", context).code(), ErrorCode::cancelled);
   EXPECT_EQ(folder.count(), 0u);
-}
-
-// Writing small worlds fails when the file is closed, writing large ones before that. This holds
-// for all formats.
-TEST(Worlds, AFullDiskIsNoticed) {
-  const TempFolder folder;
-  for (const int side : {5, 200}) {
-    World world = wavy_world(side, 1);
-    world.pages[0].image.clear();
-    for (const char* name : {"a.wrl", "a.wrz", "a.obj", "a.gltf", "a.glb"}) {
-      Status status;
-      {
-        AtomicFiles files;
-        const test::FullDisk full(100);
-        status = write_world(world, folder / name, files, {}).status();
-      }
-      EXPECT_EQ(status.code(), ErrorCode::io) << name << ' ' << side;
-      EXPECT_EQ(folder.count(), 0u) << name;
-    }
-  }
 }
 
 }  // namespace

@@ -137,6 +137,25 @@ TEST(Worlds, CancellingLeavesNothingBehind) {
   }
 }
 
+// Writing small worlds fails when the file is closed, writing large ones before that.
+TEST(Worlds, AFullDiskIsNoticed) {
+  const TempFolder folder;
+  for (const int side : {5, 200}) {
+    World world = wavy_world(side, 1);
+    world.pages[0].image.clear();
+    for (const char* name : kNames) {
+      Status status;
+      {
+        AtomicFiles files;
+        const FullDisk full(100);
+        status = write_world(world, folder / name, files, {}).status();
+      }
+      EXPECT_EQ(status.code(), ErrorCode::io) << name << ' ' << side;
+      EXPECT_EQ(folder.count(), 0u) << name;
+    }
+  }
+}
+
 // The file beside the world may be the larger one, and the only one that fails.
 TEST(Worlds, AFullDiskIsNoticedInEveryFile) {
   World named = two_pages(), large = wavy_world(40, 1);

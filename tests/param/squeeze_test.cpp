@@ -27,13 +27,13 @@ TEST(Squeeze, CapsMeetMilnorsOptimum) {
   for (const double degrees : {20.0, 45.0, 70.0, 90.0}) {
     const double a = degrees * std::numbers::pi / 180, optimum = a / std::sin(a);
     const Disc d = testing::make_cap(a, 40);
-    ParamOptions options;
+    param::FlattenOptions options;
     options.method = ParamMethod::isometric;
     options.iterations = 20;
     options.max_stretch = 1.0001;  // cannot be reached, so all squeeze steps are done
     options.squeeze_iterations = 40;
     options.squeeze_ratio = true;
-    const ParamResult r = run(d, options);
+    const ParamResult r = run_with(d, options);
     std::vector<TriangleStretch> s(d.triangles.size());
     measure_triangles(d.view(), r.uvs, s);
     double greatest = 0, least = 1e300;

@@ -162,57 +162,59 @@ json& sparse(json& j) {
   return j["accessors"][0]["sparse"];
 }
 
+// Ways to damage a file of one primitive, whose first accessor is sparse.
+struct Damage {
+  const char* name;
+  std::function<void(json&)> apply;
+};
+const std::vector<Damage> kDamages = {
+    {"count", [](json& j) { j["accessors"][0]["count"] = 5; }},
+    {"huge count", [](json& j) { j["accessors"][0]["count"] = 4000000000000ll; }},
+    {"offset", [](json& j) { j["accessors"][0]["byteOffset"] = 4; }},
+    {"view length", [](json& j) { j["bufferViews"][0]["byteLength"] = 4000; }},
+    {"view end", [](json& j) { j["bufferViews"][0]["byteOffset"] = 60; }},
+    {"view offset", [](json& j) { j["bufferViews"][0]["byteOffset"] = 1ll << 40; }},
+    {"stride", [](json& j) { j["bufferViews"][0]["byteStride"] = 252; }},
+    {"buffer", [](json& j) { j["bufferViews"][0]["buffer"] = 3; }},
+    {"view", [](json& j) { j["accessors"][0]["bufferView"] = 9; }},
+    {"accessor", [](json& j) { j["meshes"][0]["primitives"][0]["attributes"]["POSITION"] = 9; }},
+    {"type", [](json& j) { j["accessors"][0]["type"] = "SCALAR"; }},
+    {"index type", [](json& j) { j["accessors"][1]["componentType"] = 5126; }},
+    {"mesh", [](json& j) { j["nodes"][0]["mesh"] = 4; }},
+    {"no data",
+     [](json& j) {
+       j["accessors"][0].erase("bufferView");
+       j["accessors"][0]["count"] = 2000000000;
+     }},
+    {"image",
+     [](json& j) {
+       j["images"] = {{{"bufferView", 17}, {"mimeType", "image/png"}}};
+     }},
+    {"image range",
+     [](json& j) {
+       j["bufferViews"].push_back({{"buffer", 0}, {"byteOffset", 100000}, {"byteLength", 50}});
+       j["images"] = {{{"bufferView", 3}, {"mimeType", "image/png"}}};
+     }},
+    {"sparse count", [](json& j) { sparse(j)["count"] = -1; }},
+    {"sparse index", [](json& j) { sparse(j)["indices"]["byteOffset"] = 4; }},
+    {"sparse indices", [](json& j) { sparse(j)["indices"]["bufferView"] = 9; }},
+    {"sparse index type", [](json& j) { sparse(j)["indices"]["componentType"] = 7; }},
+    {"sparse values", [](json& j) { sparse(j)["values"]["byteOffset"] = 44; }},
+    {"colours",
+     [](json& j) {
+       j["accessors"].push_back(j["accessors"][0]);
+       j["accessors"][2]["count"] = 3;
+       j["meshes"][0]["primitives"][0]["attributes"]["COLOR_0"] = 2;
+     }},
+    {"no position",
+     [](json& j) {
+       j["meshes"][0]["primitives"][0]["attributes"] = {{"COLOR_0", 0}};
+     }},
+};
+
 TEST(Gltf, RangesAreChecked) {
   const TempFolder folder;
-  struct Damage {
-    const char* name;
-    std::function<void(json&)> apply;
-  };
-  const std::vector<Damage> damages = {
-      {"count", [](json& j) { j["accessors"][0]["count"] = 5; }},
-      {"huge count", [](json& j) { j["accessors"][0]["count"] = 4000000000000ll; }},
-      {"offset", [](json& j) { j["accessors"][0]["byteOffset"] = 4; }},
-      {"view length", [](json& j) { j["bufferViews"][0]["byteLength"] = 4000; }},
-      {"view end", [](json& j) { j["bufferViews"][0]["byteOffset"] = 60; }},
-      {"view offset", [](json& j) { j["bufferViews"][0]["byteOffset"] = 1ll << 40; }},
-      {"stride", [](json& j) { j["bufferViews"][0]["byteStride"] = 252; }},
-      {"buffer", [](json& j) { j["bufferViews"][0]["buffer"] = 3; }},
-      {"view", [](json& j) { j["accessors"][0]["bufferView"] = 9; }},
-      {"accessor", [](json& j) { j["meshes"][0]["primitives"][0]["attributes"]["POSITION"] = 9; }},
-      {"type", [](json& j) { j["accessors"][0]["type"] = "SCALAR"; }},
-      {"index type", [](json& j) { j["accessors"][1]["componentType"] = 5126; }},
-      {"mesh", [](json& j) { j["nodes"][0]["mesh"] = 4; }},
-      {"no data",
-       [](json& j) {
-         j["accessors"][0].erase("bufferView");
-         j["accessors"][0]["count"] = 2000000000;
-       }},
-      {"image",
-       [](json& j) {
-         j["images"] = {{{"bufferView", 17}, {"mimeType", "image/png"}}};
-       }},
-      {"image range",
-       [](json& j) {
-         j["bufferViews"].push_back({{"buffer", 0}, {"byteOffset", 100000}, {"byteLength", 50}});
-         j["images"] = {{{"bufferView", 3}, {"mimeType", "image/png"}}};
-       }},
-      {"sparse count", [](json& j) { sparse(j)["count"] = -1; }},
-      {"sparse index", [](json& j) { sparse(j)["indices"]["byteOffset"] = 4; }},
-      {"sparse indices", [](json& j) { sparse(j)["indices"]["bufferView"] = 9; }},
-      {"sparse index type", [](json& j) { sparse(j)["indices"]["componentType"] = 7; }},
-      {"sparse values", [](json& j) { sparse(j)["values"]["byteOffset"] = 44; }},
-      {"colours",
-       [](json& j) {
-         j["accessors"].push_back(j["accessors"][0]);
-         j["accessors"][2]["count"] = 3;
-         j["meshes"][0]["primitives"][0]["attributes"]["COLOR_0"] = 2;
-       }},
-      {"no position",
-       [](json& j) {
-         j["meshes"][0]["primitives"][0]["attributes"] = {{"COLOR_0", 0}};
-       }},
-  };
-  for (const Damage& damage : damages) {
+  for (const Damage& damage : kDamages) {
     Gltf g;
     const int positions = g.floats(kSquare, "VEC3", 3);
     g.single({{"attributes", {{"POSITION", positions}}},
@@ -227,6 +229,10 @@ TEST(Gltf, RangesAreChecked) {
     ASSERT_FALSE(loaded.ok()) << damage.name;
     EXPECT_NE(loaded.status().message().find("scene.glb"), std::string::npos) << damage.name;
   }
+}
+
+TEST(Gltf, TrianglesBeyondTheVerticesAreLeftOut) {
+  const TempFolder folder;
   Gltf g;
   const int positions = g.floats(kSquare, "VEC3", 3);
   g.single(

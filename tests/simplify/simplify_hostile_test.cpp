@@ -6,6 +6,7 @@
 #include <limits>
 #include <random>
 
+#include "libatlas/core/clock.h"
 #include "tests/simplify/expect_sound.h"
 
 namespace atlas {
@@ -204,11 +205,12 @@ TEST(SimplifyHostile, AFanOfManyTriangles) {
   ChartedMeshBuilder builder;
   builder.add_chart(vertices, triangles);
   const ChartedMesh mesh = builder.build();
+  Stopwatch watch(cpu_seconds);
   const SimplifiedMesh coarse = simplify(mesh, 100);
+  // Ranking the hub again after each collapse would take far longer.
+  EXPECT_LT(watch.lap(), 5);
   EXPECT_EQ(broken_triangles(mesh, coarse), 0U);
   EXPECT_LT(coarse.triangles_out, 500U);
-  // Ranking the hub again after each collapse would take far longer.
-  EXPECT_LT(coarse.cpu_seconds, 5);
 }
 
 TEST(SimplifyHostile, EmptyAndSmall) {

@@ -3,8 +3,6 @@
 #include <cctype>
 #include <charconv>
 #include <cmath>
-#include <cstring>
-#include <deque>
 #include <fstream>
 #include <glm/gtc/matrix_transform.hpp>
 #include <glm/mat4x4.hpp>
@@ -15,6 +13,7 @@
 #include <string_view>
 
 #include "libatlas/image/image_io.h"
+#include "tests/support/vrml_nodes.h"
 
 namespace atlas::test {
 namespace {
@@ -133,162 +132,7 @@ void read_obj(const fs::path& path, WorldMesh& mesh) {
   } while (words.next_line());
 }
 
-// The value of a VRML field.
-struct Value {
-  std::vector<double> numbers;
-  std::vector<std::string> strings;
-  std::vector<struct VrmlNode*> nodes;
-};
-struct VrmlNode {
-  std::string type;
-  std::map<std::string, Value> fields;
-  const Value& field(const std::string& name) const {
-    static const Value none;
-    const auto it = fields.find(name);
-    return it == fields.end() ? none : it->second;
-  }
-  const VrmlNode* node(const std::string& name) const {
-    const Value& value = field(name);
-    return value.nodes.empty() ? nullptr : value.nodes[0];
-  }
-};
-
-class VrmlReader {
- public:
-  explicit VrmlReader(std::string_view text) : text_(text) {
-    if (text.substr(0, 15) != "#VRML V2.0 utf8")
-      throw std::runtime_error("the VRML header is missing");
-    advance();
-  }
-  std::vector<const VrmlNode*> read() {
-    std::vector<const VrmlNode*> roots;
-    while (kind_ != Kind::end) {
-      if (word_ == "ROUTE") {
-        for (int i = 0; i < 4; ++i) advance();
-      } else if (const VrmlNode* node = read_node()) {
-        roots.push_back(node);
-      }
-    }
-    return roots;
-  }
-
- private:
-  enum class Kind { end, word, number, string, mark };
-
-  [[noreturn]] void fail(const std::string& wanted) const {
-    throw std::runtime_error("VRML, byte " + std::to_string(at_) + ": expected " + wanted);
-  }
-
-  void advance() {
-    while (at_ < text_.size() && (std::isspace(static_cast<unsigned char>(text_[at_])) ||
-                                  text_[at_] == ',' || text_[at_] == '#')) {
-      if (text_[at_] == '#')
-        while (at_ < text_.size() && text_[at_] != '\n') ++at_;
-      else
-        ++at_;
-    }
-    if (at_ >= text_.size()) {
-      kind_ = Kind::end;
-      word_ = {};
-      return;
-    }
-    const std::size_t first = at_;
-    const char c = text_[at_];
-    if (std::strchr("{}[]", c)) {
-      kind_ = Kind::mark;
-      ++at_;
-    } else if (c == '"') {
-      kind_ = Kind::string;
-      for (++at_; at_ < text_.size() && text_[at_] != '"'; ++at_)
-        if (text_[at_] == '\\') ++at_;
-      if (at_ >= text_.size()) fail("a closing quote");
-      ++at_;
-      word_ = text_.substr(first + 1, at_ - first - 2);
-      return;
-    } else {
-      while (at_ < text_.size() && !std::isspace(static_cast<unsigned char>(text_[at_])) &&
-             !std::strchr("{}[],\"#", text_[at_]))
-        ++at_;
-      const auto [end, error] = std::from_chars(text_.data() + first, text_.data() + at_, number_);
-      kind_ = error == std::errc() && end == text_.data() + at_ ? Kind::number : Kind::word;
-    }
-    word_ = text_.substr(first, at_ - first);
-  }
-
-  VrmlNode* read_node() {
-    if (kind_ != Kind::word) fail("a node");
-    if (word_ == "NULL") return advance(), nullptr;
-    if (word_ == "USE") {
-      advance();
-      VrmlNode* node = defined_[std::string(word_)];
-      if (!node) fail("a DEF before USE " + std::string(word_));
-      return advance(), node;
-    }
-    std::string name;
-    if (word_ == "DEF") {
-      advance();
-      name = word_;
-      advance();
-    }
-    VrmlNode* node = &all_.emplace_back();
-    node->type = word_;
-    if (!name.empty()) defined_[name] = node;
-    advance();
-    if (word_ != "{") fail("{ after " + node->type);
-    advance();
-    while (word_ != "}") {
-      if (kind_ != Kind::word) fail("a field of " + node->type);
-      const std::string field(word_);
-      advance();
-      read_value(node->fields[field]);
-    }
-    advance();
-    return node;
-  }
-
-  void read_value(Value& value) {
-    if (kind_ == Kind::mark && word_ == "[") {
-      for (advance(); !(kind_ == Kind::mark && word_ == "]");) {
-        if (kind_ == Kind::end) fail("]");
-        read_item(value);
-      }
-      advance();
-    } else if (kind_ == Kind::number) {
-      while (kind_ == Kind::number) read_item(value);
-    } else {
-      read_item(value);
-    }
-  }
-
-  void read_item(Value& value) {
-    if (kind_ == Kind::number) {
-      value.numbers.push_back(number_);
-      advance();
-    } else if (kind_ == Kind::string) {
-      value.strings.emplace_back(word_);
-      advance();
-    } else if (word_ == "TRUE" || word_ == "FALSE") {
-      value.numbers.push_back(word_ == "TRUE");
-      advance();
-    } else {
-      value.nodes.push_back(read_node());
-    }
-  }
-
-  std::string_view text_, word_;
-  std::size_t at_ = 0;
-  Kind kind_ = Kind::end;
-  double number_ = 0;
-  std::deque<VrmlNode> all_;
-  std::map<std::string, VrmlNode*> defined_;
-
- public:
-  // The nodes live as long as their reader.
-  VrmlReader(const VrmlReader&) = delete;
-  VrmlReader& operator=(const VrmlReader&) = delete;
-};
-
-glm::dmat4 transform_of(const VrmlNode& node) {
+glm::dmat4 transform_of(const vrml::Node& node) {
   const auto numbers = [&](const char* name, std::vector<double> otherwise) {
     const auto& n = node.field(name).numbers;
     return n.size() == otherwise.size() ? n : otherwise;
@@ -305,26 +149,26 @@ class Gatherer {
  public:
   Gatherer(WorldMesh& mesh, fs::path folder) : mesh_(mesh), folder_(std::move(folder)) {}
 
-  void gather(const VrmlNode* node, glm::dmat4 transform) {
+  void gather(const vrml::Node* node, glm::dmat4 transform) {
     if (!node) return;
     if (node->type == "Transform") transform = transform * transform_of(*node);
     if (node->type == "Shape") return add_shape(*node, transform);
     for (const auto& [name, value] : node->fields)
-      for (const VrmlNode* child : value.nodes) gather(child, transform);
+      for (const vrml::Node* child : value.nodes) gather(child, transform);
   }
 
  private:
-  void add_shape(const VrmlNode& shape, const glm::dmat4& transform) {
-    const VrmlNode* faces = shape.node("geometry");
+  void add_shape(const vrml::Node& shape, const glm::dmat4& transform) {
+    const vrml::Node* faces = shape.node("geometry");
     if (!faces || faces->type != "IndexedFaceSet") return;
     WorldMesh::Surface surface;
-    if (const VrmlNode* appearance = shape.node("appearance"))
-      if (const VrmlNode* texture = appearance->node("texture"))
+    if (const vrml::Node* appearance = shape.node("appearance"))
+      if (const vrml::Node* texture = appearance->node("texture"))
         if (!texture->field("url").strings.empty())
           surface.image = load_image(mesh_, images_, folder_ / texture->field("url").strings[0]);
     mesh_.surfaces.push_back(surface);
-    const VrmlNode* coord = faces->node("coord");
-    const VrmlNode* texcoord = faces->node("texCoord");
+    const vrml::Node* coord = faces->node("coord");
+    const vrml::Node* texcoord = faces->node("texCoord");
     if (!coord) return;
     const auto first = std::uint32_t(mesh_.positions.size()),
                first_uv = std::uint32_t(mesh_.texcoords.size());
@@ -342,7 +186,7 @@ class Gatherer {
     add_faces(*faces, first, first_uv, texcoord != nullptr);
   }
 
-  void add_faces(const VrmlNode& faces, std::uint32_t first, std::uint32_t first_uv,
+  void add_faces(const vrml::Node& faces, std::uint32_t first, std::uint32_t first_uv,
                  bool textured) {
     const auto& index = faces.field("coordIndex").numbers;
     const auto& given = faces.field("texCoordIndex").numbers;
@@ -384,10 +228,9 @@ Result<WorldMesh> read_world(const fs::path& path) {
     if (path.extension() == ".obj") {
       read_obj(path, mesh);
     } else if (path.extension() == ".wrl") {
-      const std::string text = read_text(path);
-      VrmlReader reader(text);
+      const vrml::Nodes nodes = vrml::read_nodes(read_text(path));
       Gatherer gatherer(mesh, path.parent_path());
-      for (const VrmlNode* root : reader.read()) gatherer.gather(root, glm::dmat4(1));
+      for (const vrml::Node* root : nodes.roots) gatherer.gather(root, glm::dmat4(1));
     } else {
       return Status(ErrorCode::unsupported, path.string() + ": neither .obj nor .wrl");
     }

@@ -6,6 +6,7 @@
 #include "libatlas/charts/geometry/tangents.h"
 #include "libatlas/core/degrees.h"
 #include "libatlas/core/glm_bridge.h"
+#include "libatlas/core/hull.h"
 
 namespace atlas {
 namespace {
@@ -17,29 +18,9 @@ constexpr double kMargin = 1e-5;
 // Wider cones are not projected to the tangent plane, where their normals would lie too far out.
 constexpr double kHullCone = radians(80);
 
-struct ProjectedNormal {
-  double x, y;
+struct ProjectedNormal : Vec2d {
   Vec3f normal;
 };
-
-// Andrew's monotone chain. `points` must be sorted by x, then by y.
-void reduce_to_hull(std::vector<ProjectedNormal>& points) {
-  std::vector<ProjectedNormal> hull;
-  for (int pass = 0; pass < 2; ++pass) {
-    const std::size_t base = hull.size();
-    for (const ProjectedNormal& p : points) {
-      while (hull.size() >= base + 2) {
-        const ProjectedNormal &a = hull[hull.size() - 2], &b = hull.back();
-        if ((b.x - a.x) * (p.y - a.y) - (b.y - a.y) * (p.x - a.x) > 0) break;
-        hull.pop_back();
-      }
-      hull.push_back(p);
-    }
-    if (points.size() > 1) hull.pop_back();
-    std::reverse(points.begin(), points.end());
-  }
-  if (points.size() > 1 || hull.empty()) points = std::move(hull);
-}
 
 struct CellLists {
   std::vector<std::uint32_t> first, triangles;
@@ -130,7 +111,7 @@ void split_by_cone(const Topology& topology, double cone, Cells& cells) {
 ExtremeNormals extreme_normals(const Topology& topology, const Cells& cells) {
   const CellLists lists(cells);
   ExtremeNormals result;
-  std::vector<ProjectedNormal> points;
+  std::vector<ProjectedNormal> points, hull;
   for (std::uint32_t k = 0; k < cells.count; ++k) {
     result.first.push_back(static_cast<std::uint32_t>(result.normals.size()));
     if (lists.of(k).empty()) continue;
@@ -142,12 +123,15 @@ ExtremeNormals extreme_normals(const Topology& topology, const Cells& cells) {
       const glm::dvec3 n = to_dvec(topology.normals[t]);
       const double height = cone.angle < kHullCone ? glm::dot(n, axis) : 1;
       const glm::dvec2 p = plane.of(n) / height;
-      points.push_back({p.x, p.y, topology.normals[t]});
+      points.push_back({{p.x, p.y}, topology.normals[t]});
     }
     std::sort(points.begin(), points.end(), [](const ProjectedNormal& a, const ProjectedNormal& b) {
       return a.x != b.x ? a.x < b.x : a.y < b.y;
     });
-    if (cone.angle < kHullCone) reduce_to_hull(points);
+    if (cone.angle < kHullCone && points.size() > 1) {
+      sorted_hull(points, hull);
+      points.swap(hull);
+    }
     for (const ProjectedNormal& p : points) result.normals.push_back(p.normal);
   }
   result.first.push_back(static_cast<std::uint32_t>(result.normals.size()));

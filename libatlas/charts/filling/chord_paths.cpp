@@ -4,7 +4,7 @@
 #include <functional>
 #include <queue>
 
-#include "libatlas/charts/geometry/hull.h"
+#include "libatlas/core/hull.h"
 
 namespace atlas {
 namespace {

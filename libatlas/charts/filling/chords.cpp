@@ -5,7 +5,7 @@
 #include <numeric>
 #include <queue>
 
-#include "libatlas/charts/geometry/hull.h"
+#include "libatlas/core/hull.h"
 
 namespace atlas {
 namespace {

@@ -9,7 +9,7 @@
 #include "libatlas/charts/filling/chord_paths.h"
 #include "libatlas/charts/filling/chords.h"
 #include "libatlas/charts/filling/middle_cut.h"
-#include "libatlas/charts/geometry/hull.h"
+#include "libatlas/core/hull.h"
 #include "libatlas/param/halfedges.h"
 
 namespace atlas {

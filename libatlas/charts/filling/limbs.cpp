@@ -8,7 +8,7 @@
 
 #include "libatlas/charts/filling/limb_cutter.h"
 #include "libatlas/charts/flattening/part_of_chart.h"
-#include "libatlas/charts/geometry/hull.h"
+#include "libatlas/core/hull.h"
 
 namespace atlas {
 namespace {

@@ -7,7 +7,7 @@
 
 #include "libatlas/charts/filling/chords.h"
 #include "libatlas/charts/filling/line_cut.h"
-#include "libatlas/charts/geometry/hull.h"
+#include "libatlas/core/hull.h"
 
 namespace atlas {
 namespace {

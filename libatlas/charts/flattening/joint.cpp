@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "libatlas/charts/geometry/hull.h"
+#include "libatlas/core/hull.h"
 
 namespace atlas {
 std::array<std::uint32_t, 2> ends_of(const FlatChart& chart, std::uint32_t half_edge) {

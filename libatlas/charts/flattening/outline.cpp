@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <array>
 
-#include "libatlas/charts/geometry/hull.h"
 #include "libatlas/charts/mesh/chart_fans.h"
 #include "libatlas/core/bounds.h"
 #include "libatlas/core/glm_bridge.h"
+#include "libatlas/core/hull.h"
 
 namespace atlas {
 namespace {

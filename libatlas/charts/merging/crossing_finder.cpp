@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "libatlas/charts/geometry/hull.h"
 #include "libatlas/charts/merging/fan_kernels.h"
+#include "libatlas/core/hull.h"
 
 namespace atlas {
 namespace {

@@ -4,8 +4,8 @@
 #include <array>
 #include <cmath>
 
-#include "libatlas/charts/geometry/hull.h"
 #include "libatlas/core/glm_bridge.h"
+#include "libatlas/core/hull.h"
 
 namespace atlas {
 namespace {

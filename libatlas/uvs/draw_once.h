@@ -9,7 +9,7 @@
 
 #include "libatlas/core/context.h"
 #include "libatlas/core/vec.h"
-#include "libatlas/pipeline/assemble_world.h"
+#include "libatlas/uvs/page_uvs.h"
 
 namespace atlas {
 

@@ -1,6 +1,6 @@
 // No texel is drawn twice. Checked with another rasteriser (tests/support/atlas_measure.h) on
 // random slivers, among neighbours that leave no more space than gutters do.
-#include "libatlas/pipeline/draw_once.h"
+#include "libatlas/uvs/draw_once.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "libatlas/pipeline/draw_once.h"
+#include "libatlas/uvs/draw_once.h"
 
 #include <algorithm>
 #include <cmath>

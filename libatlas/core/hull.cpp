@@ -1,4 +1,4 @@
-#include "libatlas/charts/geometry/hull.h"
+#include "libatlas/core/hull.h"
 
 #include <algorithm>
 #include <cmath>
@@ -35,21 +35,7 @@ double hull_area(std::vector<Vec2d>& points, std::vector<Vec2d>& hull) {
 }
 
 double sorted_hull_area(std::vector<Vec2d>& points, std::vector<Vec2d>& hull) {
-  hull.clear();
-  if (points.empty()) return 0;
-  for (int pass = 0; pass < 2; ++pass) {
-    const std::size_t base = hull.size();
-    const Vec2d first = points.front(), last = points.back();
-    for (const Vec2d& p : points) {
-      if (cross(first, last, p) > 0) continue;  // on the other pass's side
-      while (hull.size() >= base + 2 && cross(hull[hull.size() - 2], hull.back(), p) <= 0) {
-        hull.pop_back();
-      }
-      hull.push_back(p);
-    }
-    hull.pop_back();
-    std::reverse(points.begin(), points.end());
-  }
+  sorted_hull(points, hull);
   double twice = 0;
   for (std::size_t i = 2; i < hull.size(); ++i) twice += cross(hull[0], hull[i - 1], hull[i]);
   return 0.5 * twice;

@@ -1,5 +1,5 @@
 // Distances, convex hulls and smallest rectangles of flat points.
-#include "libatlas/charts/geometry/hull.h"
+#include "libatlas/core/hull.h"
 
 #include <gtest/gtest.h>
 
