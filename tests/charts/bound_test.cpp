@@ -33,6 +33,30 @@ TEST(Bound, AWideOneSavesChartsAndANarrowOneStretch) {
   }
 }
 
+Shape with_spikes(Shape shape, std::size_t every, float height) {
+  for (std::size_t v = 0; v < shape.positions.size(); v += every) {
+    for (float* x : {&shape.positions[v].x, &shape.positions[v].y, &shape.positions[v].z})
+      *x *= 1 + height;
+  }
+  return shape;
+}
+
+// Charts of rough surfaces stretch more than merging allows with the default bound.
+TEST(Bound, AWiderOneLeavesNoMoreChartsOfARoughSurface) {
+  for (const Shape& shape :
+       {noisy_along_normals(icosphere(4), 0.6), with_spikes(icosphere(4), 40, 0.3F),
+        noisy_along_normals(torus(80, 28), 0.6)}) {
+    std::size_t before = shape.triangle_count();
+    for (const double bound : {1.25, 1.5, 2.0, 5.0}) {
+      const ChartSet made = bounded(shape, bound);
+      EXPECT_LE(made.charts.size(), before) << shape.name << " " << bound;
+      EXPECT_LE(made.distortion.stretch_999, bound * (1 + 1e-6)) << shape.name;
+      EXPECT_EQ(made.distortion.flips, 0u) << shape.name;
+      before = made.charts.size();
+    }
+  }
+}
+
 TEST(Bound, WhatUnrollsNeedsFewChartsAtAnyBound) {
   for (const Shape& shape :
        {cylinder(48, 12), cylinder(60, 30), cylinder(200, 100, 1, 2), cylinder(60, 2, 1, 0.01),
