@@ -4,7 +4,7 @@
 #include <optional>
 
 #include "libatlas/core/progress.h"
-#include "libatlas/pack/fit_free_page.h"
+#include "libatlas/pack/fit_many.h"
 #include "libatlas/pack/fit_pages.h"
 #include "libatlas/pack/fit_result.h"
 #include "libatlas/pack/outline_fit.h"
@@ -208,9 +208,12 @@ bool worth_pressing_late(double fill, const FitSearchOptions& options) {
   return fill < kPoorFill && kMostPressed * fill >= options.wanted_fill;
 }
 
-// Presses the charts if they are few, else searches for the largest scale at which they fit.
-Result<FitResult> search_outlines(const FitCharts& charts, const FitSearchOptions& options,
-                                  const Context& context) {
+// Presses the charts if they are few, else searches for the largest scale at which they fit. On
+// pages of given shape, it looks for scales above `known` only, and returns nothing if there is
+// none.
+Result<std::optional<FitResult>> search_outlines(const FitCharts& charts,
+                                                 const FitSearchOptions& options, double known,
+                                                 const Context& context) {
   const auto [items, outlines] = charts;
   FitResult result;
   const bool specks = has_specks(outlines, options);
@@ -221,7 +224,7 @@ Result<FitResult> search_outlines(const FitCharts& charts, const FitSearchOption
   // far cheaper.
   const bool many = options.free_aspect && items.size() > kFewInRows;
   if (context.cancelled()) return Status::cancelled();
-  if (pressed && (many || options.tried > 0 || !is_straight(outlines))) return std::move(*pressed);
+  if (pressed && (many || options.tried > 0 || !is_straight(outlines))) return pressed;
   FitOptions by_cells = options;
   if (pressed) by_cells.preset = PackPreset::standard;
   FitOptions by_quarters = by_cells;
@@ -229,13 +232,14 @@ Result<FitResult> search_outlines(const FitCharts& charts, const FitSearchOption
   OutlineFit quarters(items, outlines, by_quarters, context);
   OutlineFit all(items, outlines, by_cells, context);
   OutlineLayout best;
+  best.scale = known;
   OutlineFit* fit = search_directions(quarters, all, result, best);
   const bool found = fit != nullptr;
   if (found && options.pages == 1 && items.size() < kManyItems) place_by_boxes(*fit, result, best);
   if (context.cancelled()) return Status::cancelled();
-  if (pressed && (!found || (!options.free_aspect && best.scale <= pressed->scale)))
-    return std::move(*pressed);
+  if (pressed && (!found || (!options.free_aspect && best.scale <= pressed->scale))) return pressed;
   if (!found) return no_room(items.size(), options);
+  if (best.pieces.empty()) return std::optional<FitResult>{};
   if (options.free_aspect && options.pages == 1 && items.size() > 1)
     fill_free_page(*fit, result, best);
   if (best.scale == options.max_scale) use_fewer_pages(*fit, options, result, best);
@@ -246,12 +250,12 @@ Result<FitResult> search_outlines(const FitCharts& charts, const FitSearchOption
   if (pressed && (options.free_aspect ? pressed->utilization >= result.utilization
                                       : pressed->scale > result.scale)) {
     pressed->layouts += result.layouts;
-    return std::move(*pressed);
+    return pressed;
   }
   std::optional<FitResult> denser = press_pages(result, charts, options, context);
   if (context.cancelled()) return Status::cancelled();
-  if (denser) return std::move(*denser);
-  return result;
+  if (denser) return denser;
+  return std::optional(std::move(result));
 }
 
 }  // namespace
@@ -259,20 +263,30 @@ Result<FitResult> search_outlines(const FitCharts& charts, const FitSearchOption
 Result<FitResult> fit_outlines(const FitCharts& charts, const FitSearchOptions& options,
                                const Context& context) {
   const std::size_t n = charts.items.size();
-  if (!options.free_aspect || options.pages > 1 || n < kSomeOnFreePage)
-    return search_outlines(charts, options, context);
-  constexpr double kQuick = 0.3;  // share of the progress
-  std::optional<FitResult> quick =
-      fit_free_page(charts, options, part_of_stage(context, "packing", 0, kQuick));
-  if (context.cancelled()) return Status::cancelled();
-  if (quick && n >= kManyOnFreePage && !has_specks(charts.outlines, options))
-    return std::move(*quick);
-  Result<FitResult> searched =
-      search_outlines(charts, options, part_of_stage(context, "packing", kQuick, 1));
-  if (!quick || context.cancelled()) return searched;
-  if (!searched.ok() || quick->utilization > searched->utilization) return std::move(*quick);
-  searched->layouts += quick->layouts;
-  return searched;
+  std::optional<FitResult> quick;
+  double begun = 0;  // share of the progress
+  if (n >= kSomeOnPage * options.pages) {
+    begun = 0.3;
+    quick = fit_many(charts, options, part_of_stage(context, "packing", 0, begun));
+    if (context.cancelled()) return Status::cancelled();
+    // Where all charts are as large as they may be, the pages can be smaller or fewer.
+    if (quick && !options.free_aspect && quick->scale >= options.max_scale) quick.reset();
+    if (quick && options.free_aspect && n >= kManyOnPage && !has_specks(charts.outlines, options))
+      return std::move(*quick);
+  }
+  const bool many = quick && n >= kManyOnPage * options.pages;
+  const double known = many && !options.free_aspect ? quick->scale : 0;
+  Result<std::optional<FitResult>> searched =
+      search_outlines(charts, options, known, part_of_stage(context, "packing", begun, 1));
+  if (!searched.ok())
+    return quick && !context.cancelled() ? Result(std::move(*quick)) : searched.status();
+  std::optional<FitResult>& found = *searched;
+  const bool better =
+      found && (!quick || (options.free_aspect ? found->utilization >= quick->utilization
+                                               : found->scale > quick->scale));
+  if (!better) return std::move(*quick);
+  if (quick) found->layouts += quick->layouts;
+  return std::move(*found);
 }
 
 }  // namespace atlas::pack

@@ -1,7 +1,8 @@
-#include "libatlas/pack/fit_free_page.h"
+#include "libatlas/pack/fit_many.h"
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <utility>
 
@@ -26,20 +27,25 @@ constexpr double kGuess = 0.62;
 constexpr double kWordsFast = 45e3, kWords = 450e3, kWordsBest = 4.5e6;
 // Directions that `best` tries if outlines may be turned by any angle.
 constexpr std::uint32_t kDirectionsBest = 16;
-// The number of layouts, each of which improves the guess of the scale. The page is high enough
+// The number of layouts, each of which improves the guess of the scale. The strips are high enough
 // from kNearlyFull on.
-constexpr std::uint32_t kMostLayouts = 4;
+constexpr std::uint32_t kMostLayouts = 4, kMostGiven = 6;  // pages of any shape, of given shape
 constexpr double kNearlyFull = 0.98;
 
-struct FreeLayout {
+struct ManyLayout {
   double scale = 0, fill = 0;
-  std::int32_t height = 0;  // in cells; 0: a chart found no room
+  std::int32_t height = 0;  // of the highest strip, in cells; 0: a chart found no room
   std::vector<FitPlacement> placements;
 };
 
-class FreePage {
+struct PagePlace {
+  std::uint32_t page = 0;
+  NestPlace place;
+};
+
+class ManyCharts {
  public:
-  FreePage(const FitCharts& charts, const FitOptions& options, const Context& context)
+  ManyCharts(const FitCharts& charts, const FitOptions& options, const Context& context)
       : charts_(charts), options_(options), context_(context) {
     for (const ChartOutline& o : charts.outlines) area_ += o.area;
     const bool any_angle = options.allow_rotation && options.any_angle;
@@ -53,9 +59,11 @@ class FreePage {
     const double words = options.preset == PackPreset::fast ? kWordsFast
                          : best                             ? kWordsBest
                                                             : kWords;
-    grid_ = choose_grid({charts.items.size(), options.page_size, options.alignment, rotations,
-                         words * double(charts.items.size()), 0});
+    const std::size_t a_page = charts.items.size() / options.pages + 1;
+    grid_ = choose_grid(
+        {a_page, options.page_size, options.alignment, rotations, words * double(a_page), 0});
     side_ = options.page_size / grid_.cell;
+    given_ = options.power_of_two && !options.free_aspect;
   }
 
   std::optional<FitResult> run() {
@@ -63,20 +71,25 @@ class FreePage {
         fit_bounds(charts_.outlines, options_, side_ * grid_.cell, grid_.directions);
     if (bounds.gutters_exceed_pages || !(area_ > 0)) return std::nullopt;
     const double most = std::min(options_.max_scale, bounds.alone);
-    const double page = double(options_.page_size) * options_.page_size;
-    double scale = std::min({most, std::sqrt(kGuess * page / area_), bounds.with_gutters});
-    FreeLayout best;
+    const double pages = double(options_.page_size) * options_.page_size * options_.pages;
+    double scale = std::min({most, std::sqrt(kGuess * pages / area_), bounds.with_gutters});
+    double low = 0, high = std::numeric_limits<double>::infinity();  // fits, and does not
+    ManyLayout best;
     FitResult result;
-    while (result.packings < kMostLayouts) {
-      FreeLayout layout = lay_out(scale);
+    const std::uint32_t most_layouts = options_.free_aspect ? kMostLayouts : kMostGiven;
+    while (result.packings < most_layouts) {
+      ManyLayout layout = lay_out(scale);
       if (context_.cancelled() || layout.height == 0) return std::nullopt;
       const double height = layout.height;
       const bool fits = height <= side_;
-      context_.report("packing", double(++result.packings) / kMostLayouts);
-      if (fits && layout.fill > best.fill) best = std::move(layout);
+      context_.report("packing", double(++result.packings) / most_layouts);
+      if (fits && (options_.free_aspect ? layout.fill > best.fill : scale > best.scale))
+        best = std::move(layout);
       if (fits && (scale >= most || height >= kNearlyFull * side_)) break;
+      (fits ? low : high) = scale;
       constexpr double kSafe = 0.997;
       scale = std::min(most, kSafe * scale * std::sqrt(side_ / height));
+      if (!options_.free_aspect && (scale >= high || scale <= low)) scale = (low + high) / 2;
     }
     if (best.scale == 0) return std::nullopt;
     write(std::move(best), result);
@@ -109,8 +122,8 @@ class FreePage {
   }
 
   // Packs all charts at this scale into a strip as wide as the page.
-  FreeLayout lay_out(double scale) const {
-    FreeLayout layout;
+  ManyLayout lay_out(double scale) const {
+    ManyLayout layout;
     layout.scale = scale;
     const std::vector<double> factors = chart_factors(charts_.items, options_, scale);
     std::vector<PairPiece> joined(pairs_.size());
@@ -126,39 +139,67 @@ class FreePage {
     std::vector<std::uint32_t> lone;
     for (Piece& p : lone_pieces(factors, lone)) pieces.push_back(std::move(p));
     if (context_.cancelled()) return layout;
-    constexpr std::int32_t kHighest = 4;  // in sides of the page
-    BitPage page(side_, kHighest * side_, longest_run(pieces));
-    Nest nest;
-    NestPlan plan = plan_by_size(pieces);
-    plan.cancel = context_.cancel;
-    place_pieces(pieces, plan, page, nest);
-    if (context_.cancelled() || !nest.left_over.empty()) return layout;
-    layout.height = std::max(1, nest.used_height);
+    const std::vector<PagePlace> places = fill_pages(pieces, layout);
+    if (context_.cancelled() || layout.height == 0) return layout;
     const double cell = grid_.cell;
-    layout.fill = scale * scale * area_ / (cell * cell * side_ * layout.height);
+    layout.fill = scale * scale * area_ / (cell * cell * side_ * layout.height * options_.pages);
     layout.placements.resize(factors.size());
     for (std::size_t i = 0; i < factors.size(); ++i) layout.placements[i].scale = factors[i];
     for (std::size_t k = 0; k < pairs_.size(); ++k) {
-      const auto& [first, second] = joined[k].parts[nest.places[k].direction];
-      place(first, 0, nest.places[k], layout.placements[pairs_[k].first]);
-      place(second, pairs_[k].turn, nest.places[k], layout.placements[pairs_[k].second]);
+      const auto& [first, second] = joined[k].parts[places[k].place.direction];
+      place(first, 0, places[k], layout.placements[pairs_[k].first]);
+      place(second, pairs_[k].turn, places[k], layout.placements[pairs_[k].second]);
     }
     for (std::size_t k = 0; k < lone.size(); ++k) {
       const Piece& piece = pieces[pairs_.size() + k];
-      const NestPlace& at = nest.places[pairs_.size() + k];
+      const PagePlace& at = places[pairs_.size() + k];
       FitPlacement& out = layout.placements[lone[k]];
       if (piece.cells() == 0) {
         write_at_corner(charts_.outlines[lone[k]], out);
         continue;
       }
-      const Mask& mask = piece.masks[at.direction];
-      place({{0, 0, mask.width, mask.height}, piece.origins[at.direction]}, 0, at, out);
+      const Mask& mask = piece.masks[at.place.direction];
+      place({{0, 0, mask.width, mask.height}, piece.origins[at.place.direction]}, 0, at, out);
     }
     return layout;
   }
 
-  void place(const PairPart& part, double turn, const NestPlace& at, FitPlacement& out) const {
+  // Lays the pieces into one strip per page, largest first, each on the page whose pieces have the
+  // fewest cells so far. Sets the height of the highest strip.
+  std::vector<PagePlace> fill_pages(std::span<const Piece> pieces, ManyLayout& layout) const {
+    std::vector<NestPlan> plans(options_.pages);
+    std::vector<std::int64_t> load(options_.pages);
+    std::vector<PagePlace> places(pieces.size());
+    NestPlan all = plan_by_size(pieces);
+    for (const std::uint32_t i : all.order) {
+      const auto least = std::min_element(load.begin(), load.end());
+      places[i].page = static_cast<std::uint32_t>(least - load.begin());
+      plans[places[i].page].order.push_back(i);
+      *least += pieces[i].cells();
+    }
+    const std::int32_t longest = longest_run(pieces);
+    std::vector<std::int32_t> heights(options_.pages);
+    parallel_for(context_, options_.pages, 1, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t p = begin; p < end; ++p) {
+        constexpr std::int32_t kHighest = 4;  // in sides of the page
+        BitPage page(side_, kHighest * side_, longest);
+        Nest nest;
+        plans[p].direction = all.direction;
+        plans[p].cancel = context_.cancel;
+        place_pieces(pieces, plans[p], page, nest);
+        heights[p] = nest.left_over.empty() ? std::max(1, nest.used_height) : 0;
+        for (const std::uint32_t i : plans[p].order) places[i].place = nest.places[i];
+      }
+    });
+    const auto [lowest, highest] = std::minmax_element(heights.begin(), heights.end());
+    layout.height = *lowest > 0 ? *highest : 0;
+    return places;
+  }
+
+  void place(const PairPart& part, double turn, const PagePlace& on, FitPlacement& out) const {
     const std::int32_t cell = grid_.cell;
+    const NestPlace& at = on.place;
+    out.page = on.page;
     const Rect box{(at.at.x + part.cells.x) * cell, (at.at.y + part.cells.y) * cell,
                    part.cells.width * cell, part.cells.height * cell};
     constexpr double kTurn = 2 * std::numbers::pi;
@@ -166,18 +207,29 @@ class FreePage {
     write_outline({box, angle, {box.x + part.origin.x, box.y + part.origin.y}}, options_, out);
   }
 
-  void write(FreeLayout layout, FitResult& result) const {
+  void write(ManyLayout layout, FitResult& result) const {
     result.scale = layout.scale;
     result.layouts = result.packings;
     result.placements = std::move(layout.placements);
-    result.pages.assign(1, {0, 0});
+    const std::int32_t whole = side_ * grid_.cell;
+    result.pages.assign(options_.pages, given_ ? Extent{whole, whole} : Extent{});
     double shapes = 0;
     for (std::size_t i = 0; i < result.placements.size(); ++i) {
       const FitPlacement& p = result.placements[i];
       shapes += charts_.outlines[i].area * p.scale * p.scale;
-      enclose(p.box, options_, result.pages[0]);
+      if (!given_) enclose(p.box, options_, result.pages[p.page]);
     }
+    drop_empty_pages(result);
     result.utilization = share_of_pages(shapes, result);
+    if (options_.pages > 1) group(result);
+  }
+
+  // The pages are those of F(A) = N only if these happen to suit, but the result tells both.
+  void group(FitResult& result) const {
+    std::vector<std::uint64_t> cells;
+    for (const FitPlacement& p : result.placements)
+      cells.push_back(static_cast<std::uint64_t>(p.box.area()));
+    group_areas(cells, options_.pages, context_, result.grouping);
   }
 
   const FitCharts charts_;
@@ -186,15 +238,16 @@ class FreePage {
   std::vector<ChartPair> pairs_;
   std::vector<bool> paired_;  // one per chart
   GridChoice grid_;
+  bool given_ = false;     // pages keep their size
   std::int32_t side_ = 0;  // in cells
   double area_ = 0;        // of all charts at scale 1
 };
 
 }  // namespace
 
-std::optional<FitResult> fit_free_page(const FitCharts& charts, const FitOptions& options,
-                                       const Context& context) {
-  return FreePage(charts, options, context).run();
+std::optional<FitResult> fit_many(const FitCharts& charts, const FitOptions& options,
+                                  const Context& context) {
+  return ManyCharts(charts, options, context).run();
 }
 
 }  // namespace atlas::pack

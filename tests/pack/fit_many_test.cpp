@@ -1,5 +1,5 @@
-// Many charts on one page of any shape.
-#include "libatlas/pack/fit_free_page.h"
+// Many charts on a page of any shape, on one of given shape, and on several pages.
+#include "libatlas/pack/fit_many.h"
 
 #include <gtest/gtest.h>
 
@@ -17,7 +17,7 @@ using namespace pack;
 using test::options_for;
 using Shapes = std::vector<std::vector<Vec2d>>;
 
-constexpr int kMany = kManyOnFreePage;
+constexpr int kMany = kManyOnPage;
 
 Shapes triangles(int count, double width, double height) {
   return Shapes(std::size_t(count), {{0, 0}, {width, 0}, {0, height}});
@@ -38,13 +38,22 @@ FitResult fitted(const test::ChartItems& charts, const FitOptions& options) {
   if (!fit.ok()) return {};
   EXPECT_EQ(test::check_outlines(test::placed_shapes(charts, *fit), fit->pages, options.padding),
             "");
-  EXPECT_EQ(fit->pages.size(), 1u);
-  EXPECT_LE(fit->pages[0].width, options.page_size);
-  EXPECT_LE(fit->pages[0].height, options.page_size);
+  EXPECT_EQ(fit->pages.size(), options.pages);
+  for (const Extent& page : fit->pages) {
+    EXPECT_LE(page.width, options.page_size);
+    EXPECT_LE(page.height, options.page_size);
+  }
   return *fit;
 }
 
-TEST(FreePage, PairsTrianglesThatBoxesHalfFill) {
+FitOptions given_pages(const test::ChartItems& charts, std::uint32_t pages) {
+  FitOptions options = options_for(charts, 1024);
+  options.free_aspect = false;
+  options.pages = pages;
+  return options;
+}
+
+TEST(FitMany, PairsTrianglesThatBoxesHalfFill) {
   const test::ChartItems charts(triangles(kMany, 40, 30));
   FitOptions options = options_for(charts, 1024);
   EXPECT_GT(fitted(charts, options).utilization, 0.72);
@@ -52,7 +61,7 @@ TEST(FreePage, PairsTrianglesThatBoxesHalfFill) {
   EXPECT_LT(fitted(charts, options).utilization, 0.6);
 }
 
-TEST(FreePage, FillsThePageWithChartsOfAllSizes) {
+TEST(FitMany, FillsThePageWithChartsOfAllSizes) {
   const test::ChartItems charts(blobs(kMany));
   const FitOptions options = options_for(charts, 1024);
   const FitResult fit = fitted(charts, options);
@@ -68,7 +77,7 @@ TEST(FreePage, FillsThePageWithChartsOfAllSizes) {
   EXPECT_NEAR(fit.utilization, fit.scale * fit.scale * area / double(fit.pages[0].area()), 0.01);
 }
 
-TEST(FreePage, HoldsEveryPresetAndTurn) {
+TEST(FitMany, HoldsEveryPresetAndTurn) {
   const test::ChartItems charts(blobs(kMany));
   double fast = 0;
   for (const PackPreset preset : {PackPreset::fast, PackPreset::standard, PackPreset::best}) {
@@ -83,7 +92,7 @@ TEST(FreePage, HoldsEveryPresetAndTurn) {
   for (const FitPlacement& p : fitted(charts, upright).placements) EXPECT_EQ(p.angle, 0);
 }
 
-TEST(FreePage, StopsAtTheLargestScale) {
+TEST(FitMany, StopsAtTheLargestScale) {
   const test::ChartItems charts(triangles(kMany, 40, 30));
   FitOptions options = options_for(charts, 2048);
   options.max_scale = 0.5;
@@ -92,23 +101,76 @@ TEST(FreePage, StopsAtTheLargestScale) {
   EXPECT_EQ(fit.packings, 1u);
 }
 
-TEST(FreePage, DoesNotDependOnThreads) {
-  const test::ChartItems charts(blobs(kMany));
-  const FitOptions options = options_for(charts, 512);
-  const Result<FitResult> one = fit_pages(charts.items, options, Context{.threads = 1});
-  const Result<FitResult> three = fit_pages(charts.items, options, Context{.threads = 3});
-  ASSERT_TRUE(one.ok() && three.ok());
-  test::expect_same(*one, *three);
+TEST(FitMany, DoesNotDependOnThreads) {
+  const test::ChartItems charts(blobs(2 * kMany));
+  for (const FitOptions& options :
+       std::vector<FitOptions>{options_for(charts, 512), given_pages(charts, 2)}) {
+    const Result<FitResult> one = fit_pages(charts.items, options, Context{.threads = 1});
+    const Result<FitResult> three = fit_pages(charts.items, options, Context{.threads = 3});
+    ASSERT_TRUE(one.ok() && three.ok());
+    test::expect_same(*one, *three);
+  }
 }
 
-TEST(FreePage, IsGivenUpIfGuttersTakeIt) {
+TEST(FitMany, FillsOnePageOrSeveralOfGivenShape) {
+  for (const std::uint32_t pages : {1u, 3u}) {
+    SCOPED_TRACE(pages);
+    const test::ChartItems charts(triangles(kMany * int(pages), 40, 30));
+    FitOptions options = given_pages(charts, pages);
+    const FitResult fit = fitted(charts, options);
+    EXPECT_GT(fit.utilization, 0.68);
+    for (const Extent& page : fit.pages) EXPECT_EQ(page, (Extent{1024, 1024}));
+    std::vector<double> on(pages);
+    for (const FitPlacement& p : fit.placements) on[p.page] += 600 * fit.scale * fit.scale;
+    for (const double area : on) EXPECT_NEAR(area / (1024.0 * 1024), fit.utilization, 0.01);
+    options.any_angle = false;
+    EXPECT_LT(fitted(charts, options).utilization, 0.6) << "without pairs";
+  }
+}
+
+TEST(FitMany, CropsPagesThatAreNoPowersOfTwo) {
+  const test::ChartItems charts(triangles(2 * kMany, 40, 30));
+  FitOptions options = given_pages(charts, 2);
+  options.power_of_two = false;
+  options.page_size = 1000;
+  const FitResult fit = fitted(charts, options);
+  std::vector<Extent> used(2);
+  for (const FitPlacement& p : fit.placements) {
+    used[p.page].width = std::max(used[p.page].width, p.box.right());
+    used[p.page].height = std::max(used[p.page].height, p.box.top());
+  }
+  EXPECT_EQ(fit.pages, used);
+}
+
+// The largest scale decides, so pages become fewer and smaller rather than charts larger.
+TEST(FitMany, LeavesPagesThatAreNotNeeded) {
+  const test::ChartItems charts(triangles(3 * kMany, 40, 30));
+  FitOptions options = given_pages(charts, 3);
+  options.max_scale = fitted(charts, options).scale / 4;
+  const Result<FitResult> fit = fit_pages(charts.items, options, {});
+  ASSERT_TRUE(fit.ok());
+  EXPECT_EQ(fit->scale, options.max_scale);
+  EXPECT_EQ(fit->pages.size(), 1u);
+}
+
+TEST(FitMany, TellsTheGroupsOfSeveralPages) {
+  const test::ChartItems charts(triangles(2 * kMany, 40, 30));
+  const FitResult fit = fitted(charts, given_pages(charts, 2));
+  ASSERT_EQ(fit.grouping.group.size(), charts.items.size());
+  std::vector<std::int64_t> area(2);
+  for (std::size_t i = 0; i < charts.items.size(); ++i)
+    area[fit.grouping.group[i]] += fit.placements[i].box.area();
+  EXPECT_LE(double(std::max(area[0], area[1])), double(fit.grouping.capacity));
+}
+
+TEST(FitMany, IsGivenUpIfGuttersTakeIt) {
   const test::ChartItems charts(triangles(kMany, 40, 30));
   FitOptions options = options_for(charts, 64);
   options.padding = 2;
   EXPECT_EQ(fit_pages(charts.items, options, {}).status().code(), ErrorCode::no_solution);
 }
 
-TEST(FreePage, CanBeCancelled) {
+TEST(FitMany, CanBeCancelled) {
   const test::ChartItems charts(blobs(4 * kMany));
   std::atomic<bool> raised = false;
   int reports = 0;
