@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "libatlas/pack/chart_outline.h"
+#include "libatlas/pack/fit_at_scale.h"
 #include "libatlas/pack/fit_pages.h"
 #include "libatlas/pack/lost_room.h"
 #include "libatlas/pack/shape_check.h"
@@ -136,7 +137,7 @@ Result<FitResult> search_fit(std::span<const FitItem> items, const FitSearchOpti
   }
   if (options.shapes.empty()) return fit_boxes(items, options, context);
   const std::vector<ChartOutline> outlines = outlines_of(options.shapes, context);
-  Result<FitResult> fitted = fit_outlines({items, outlines}, options, context);
+  Result<FitResult> fitted = fit_outlines_at_most({items, outlines}, options, context);
   if (fitted.ok()) note_lost_area(outlines, options, context, *fitted);
   if (context.cancelled()) return Status::cancelled();
   return fitted;

@@ -16,4 +16,11 @@ std::vector<double> chart_factors(std::span<const FitItem> items, const FitOptio
   return factors;
 }
 
+bool below_minimum_side(std::span<const FitItem> items, const FitOptions& options, double scale) {
+  return std::any_of(items.begin(), items.end(), [&](const FitItem& item) {
+    const double side = std::max(item.width, item.height);
+    return side * scale < std::min<double>(options.minimum_side, std::ceil(side));
+  });
+}
+
 }  // namespace atlas::pack

@@ -13,4 +13,7 @@ namespace atlas::pack {
 std::vector<double> chart_factors(std::span<const FitItem> items, const FitOptions& options,
                                   double scale);
 
+// Returns whether some chart would be larger than at this scale because of minimum_side.
+bool below_minimum_side(std::span<const FitItem> items, const FitOptions& options, double scale);
+
 }  // namespace atlas::pack

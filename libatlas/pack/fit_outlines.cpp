@@ -270,7 +270,8 @@ Result<FitResult> fit_outlines(const FitCharts& charts, const FitSearchOptions& 
     quick = fit_many(charts, options, part_of_stage(context, "packing", 0, begun));
     if (context.cancelled()) return Status::cancelled();
     // Where all charts are as large as they may be, the pages can be smaller or fewer.
-    if (quick && !options.free_aspect && quick->scale >= options.max_scale) quick.reset();
+    const bool reducible = options.power_of_two || options.pages > 1;
+    if (quick && reducible && quick->scale >= options.max_scale) quick.reset();
     if (quick && options.free_aspect && n >= kManyOnPage && !has_specks(charts.outlines, options))
       return std::move(*quick);
   }

@@ -8,6 +8,7 @@
 #include <tuple>
 
 #include "libatlas/pack/fit_bounds.h"
+#include "libatlas/pack/fit_factors.h"
 #include "libatlas/pack/fit_pages.h"
 #include "libatlas/pack/fit_result.h"
 #include "libatlas/pack/press.h"
@@ -283,21 +284,14 @@ class PagePress {
   std::set<std::tuple<std::uint32_t, std::uint32_t, std::uint32_t, std::uint32_t>> tried_;
 };
 
-// Returns whether some item would have its minimum side at this scale.
-bool below_minimum(std::span<const FitItem> items, const FitOptions& options, double scale) {
-  return std::any_of(items.begin(), items.end(), [&](const FitItem& item) {
-    const double side = std::max(item.width, item.height);
-    return side * scale < std::min<double>(options.minimum_side, std::ceil(side));
-  });
-}
-
 }  // namespace
 
 std::optional<FitResult> press_pages(FitResult& fitted, const FitCharts& charts,
                                      const FitSearchOptions& options, const Context& context) {
   if (!options.press_pages || options.pages < 2 || fitted.pages.size() < options.pages ||
       options.free_aspect || fitted.scale >= options.max_scale ||
-      options.preset == PackPreset::fast || below_minimum(charts.items, options, fitted.scale)) {
+      options.preset == PackPreset::fast ||
+      below_minimum_side(charts.items, options, fitted.scale)) {
     return std::nullopt;
   }
   PagePress press(charts.outlines, options, context);

@@ -21,6 +21,36 @@ void write_at_corner(const ChartOutline& outline, FitPlacement& out) {
   out.offset = {-out.scale * low.x, -out.scale * low.y};
 }
 
+FitResult result_of(const PressedPage& page, std::span<const ChartOutline> outlines,
+                    const FitOptions& options) {
+  FitResult result;
+  result.scale = page.scale;
+  result.packings = 1;
+  result.layouts = page.layouts;
+  Extent size{options.page_size, options.page_size};
+  if (options.free_aspect) {
+    size = page.page;
+  } else if (!options.power_of_two) {
+    size = squared(page.page, options);
+  }
+  result.pages = {size};
+  result.placements.resize(outlines.size());
+  double shapes = 0;
+  for (std::size_t i = 0; i < outlines.size(); ++i) {
+    FitPlacement& out = result.placements[i];
+    out.scale = page.scale;
+    const PressedPlace& at = page.places[i];
+    if (!at.placed) {
+      write_at_corner(outlines[i], out);
+      continue;
+    }
+    write_outline({at.box, at.angle, at.offset}, options, out);
+    shapes += outlines[i].area * out.scale * out.scale;
+  }
+  result.utilization = share_of_pages(shapes, result);
+  return result;
+}
+
 void drop_empty_pages(FitResult& result) {
   constexpr std::uint32_t kEmpty = 0xffffffffu;
   std::vector<std::uint32_t> now(result.pages.size(), kEmpty);

@@ -1,8 +1,11 @@
 // Internal: what the different ways to fit charts to pages share when they write their result.
 #pragma once
 
+#include <span>
+
 #include "libatlas/pack/chart_outline.h"
 #include "libatlas/pack/fit.h"
+#include "libatlas/pack/press.h"
 
 namespace atlas::pack {
 
@@ -19,6 +22,10 @@ void write_outline(const OutlinePlace& at, const FitOptions& options, FitPlaceme
 // Does the same for a chart that covers no cell, as a chart without area or gutters may. It is
 // placed at the page's corner.
 void write_at_corner(const ChartOutline& outline, FitPlacement& out);
+
+// Returns the result of a page on which all charts have the same scale.
+FitResult result_of(const PressedPage& page, std::span<const ChartOutline> outlines,
+                    const FitOptions& options);
 
 // Removes pages that hold no chart from the result. If charts are equal, fewer than N pages may be
 // needed.
