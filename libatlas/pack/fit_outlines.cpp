@@ -124,19 +124,21 @@ void fill_free_page(OutlineFit& fit, FitResult& result, OutlineLayout& best) {
   }
 }
 
+// Looks for the smallest number of pages by bisection.
 void use_fewer_pages(OutlineFit& fit, const FitOptions& options, FitResult& result,
                      OutlineLayout& best) {
   double cells = 0;
   for (const Piece& p : best.pieces) cells += static_cast<double>(p.cells());
-  auto n = static_cast<std::uint32_t>(cells / (0.9 * fit.side() * double(fit.side()))) + 1;
-  for (; n < best.page_sizes.size() && result.packings < options.max_packings; ++n) {
+  auto low = static_cast<std::uint32_t>(cells / (0.9 * fit.side() * double(fit.side()))) + 1;
+  auto high = static_cast<std::uint32_t>(best.page_sizes.size());
+  while (low < high && result.packings < options.max_packings) {
+    const std::uint32_t n = low + (high - low) / 2;
     OutlineLayout fewer;
     ++result.packings;
     const bool fits = fit.pack_at(best.scale, n, fewer);
     result.layouts += fewer.layouts;
-    if (!fits) continue;
-    best = std::move(fewer);
-    return;
+    (fits ? high : low) = fits ? n : n + 1;
+    if (fits) best = std::move(fewer);
   }
 }
 
@@ -145,12 +147,13 @@ void write_result(const OutlineFit& fit, const FitOptions& options, OutlineLayou
   const std::int32_t cell = fit.grid().cell;
   result.scale = best.scale;
   result.pages.assign(best.page_sizes.size(), {0, 0});
-  if (options.power_of_two)
+  if (options.power_of_two) {
+    if (best.scale == options.max_scale) fit.shrink_pages(best);
     for (std::uint32_t p = 0; p < result.pages.size(); ++p) {
-      if (best.scale == options.max_scale) fit.shrink_page(p, best);
       const Extent size = best.page_sizes[p];
       result.pages[p] = {size.width * cell, size.height * cell};
     }
+  }
   result.placements.resize(best.pieces.size());
   double shapes = 0;
   for (std::size_t i = 0; i < best.pieces.size(); ++i) {

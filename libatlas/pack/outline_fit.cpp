@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
+#include <numeric>
+#include <queue>
 #include <utility>
 
 #include "libatlas/core/parallel.h"
@@ -26,6 +29,39 @@ double mean_side(std::span<const ChartOutline> outlines, const FitOptions& optio
   const double page = double(options.page_size) * options.page_size * options.pages;
   const double alone = fit_bounds(outlines, options, options.page_size, 4).alone;
   return 2 * area / sides * std::min(std::sqrt(kFull * page / area), alone);
+}
+
+// The pieces of one page, largest first, and their indices in the layout.
+struct PagePieces {
+  std::vector<std::uint32_t> ids;
+  std::vector<Piece> pieces;
+};
+
+// Takes the pieces out of the layout and divides them by page. So a page costs what its own pieces
+// do, and ten thousand pages do not each go through all pieces.
+std::vector<PagePieces> pieces_by_page(OutlineLayout& layout, LargestBy by, std::uint32_t pages) {
+  std::vector<PagePieces> groups(pages);
+  for (const std::uint32_t i : plan_by_size(layout.pieces, by).order) {
+    PagePieces& group = groups[layout.page[i]];
+    group.ids.push_back(i);
+    group.pieces.push_back(std::move(layout.pieces[i]));
+  }
+  return groups;
+}
+
+void give_back(std::vector<PagePieces>& groups, OutlineLayout& layout) {
+  for (PagePieces& group : groups)
+    for (std::size_t k = 0; k < group.ids.size(); ++k)
+      layout.pieces[group.ids[k]] = std::move(group.pieces[k]);
+}
+
+NestPlan in_order(std::span<const Piece> pieces, const Context& context) {
+  NestPlan plan;
+  plan.order.resize(pieces.size());
+  std::iota(plan.order.begin(), plan.order.end(), 0u);
+  plan.direction.assign(pieces.size(), kFree);
+  plan.cancel = context.cancel;
+  return plan;
 }
 
 }  // namespace
@@ -70,22 +106,30 @@ bool OutlineFit::pack_at(double scale, std::uint32_t pages, OutlineLayout& layou
   return pack_pages(pages, layout);
 }
 
-void OutlineFit::shrink_page(std::uint32_t page, OutlineLayout& layout) const {
-  NestPlan plan = plan_by_size(layout.pieces);
-  std::erase_if(plan.order, [&](std::uint32_t i) { return layout.page[i] != page; });
-  std::int64_t cells = 0;
-  for (std::uint32_t i : plan.order) cells += layout.pieces[i].cells();
-  for (const Extent& texels : smaller_pages(options_)) {
-    const Extent size{texels.width / grid_.cell, texels.height / grid_.cell};
-    if (size.area() < cells || size.area() == 0) continue;
-    BitPage open(size.width, size.height, longest_run(layout.pieces));
-    Nest nest;
-    place_pieces(layout.pieces, plan, open, nest);
-    if (!nest.left_over.empty()) continue;
-    for (std::uint32_t i : plan.order) layout.places[i] = nest.places[i];
-    layout.page_sizes[page] = size;
-    return;
-  }
+void OutlineFit::shrink_pages(OutlineLayout& layout) const {
+  const auto pages = static_cast<std::uint32_t>(layout.page_sizes.size());
+  std::vector<PagePieces> groups = pieces_by_page(layout, LargestBy::cells, pages);
+  const std::vector<Extent> sizes = smaller_pages(options_);
+  parallel_for(context_, pages, 1, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t p = begin; p < end; ++p) {
+      const PagePieces& group = groups[p];
+      const NestPlan plan = in_order(group.pieces, context_);
+      const std::int64_t cells = cells_of(group.pieces);
+      for (const Extent& texels : sizes) {
+        const Extent size{texels.width / grid_.cell, texels.height / grid_.cell};
+        if (size.area() < cells || size.area() == 0) continue;
+        BitPage open(size.width, size.height, longest_run(group.pieces));
+        Nest nest;
+        place_pieces(group.pieces, plan, open, nest);
+        if (!nest.left_over.empty() || context_.cancelled()) continue;
+        for (std::size_t k = 0; k < group.ids.size(); ++k)
+          layout.places[group.ids[k]] = nest.places[k];
+        layout.page_sizes[p] = size;
+        break;
+      }
+    }
+  });
+  give_back(groups, layout);
 }
 
 void OutlineFit::prepare(double scale, OutlineLayout& layout) const {
@@ -100,41 +144,35 @@ void OutlineFit::prepare(double scale, OutlineLayout& layout) const {
 }
 
 void OutlineFit::deal_out(std::uint32_t pages, OutlineLayout& layout) const {
-  std::vector<std::int64_t> load(pages);
-  for (std::uint32_t i : plan_by_size(layout.pieces).order) {
-    const auto least = std::min_element(load.begin(), load.end());
-    layout.page[i] = static_cast<std::uint32_t>(least - load.begin());
-    *least += layout.pieces[i].cells();
+  using Load = std::pair<std::int64_t, std::uint32_t>;  // in cells, of a page
+  std::priority_queue<Load, std::vector<Load>, std::greater<>> loads;
+  for (std::uint32_t p = 0; p < pages; ++p) loads.emplace(0, p);
+  for (const std::uint32_t i : plan_by_size(layout.pieces).order) {
+    const auto [load, page] = loads.top();
+    loads.pop();
+    layout.page[i] = page;
+    loads.emplace(load + layout.pieces[i].cells(), page);
   }
 }
 
 bool OutlineFit::pack_pages(std::uint32_t pages, OutlineLayout& layout) const {
-  std::vector<BitPage> open;
+  std::vector<PagePieces> groups = pieces_by_page(layout, by_, pages);
   std::vector<NestSearchResult> found(pages);
-  const std::int32_t longest = longest_run(layout.pieces);
-  for (std::uint32_t p = 0; p < pages; ++p) open.emplace_back(side_, side_, longest);
-  std::vector<std::vector<std::uint32_t>> orders(pages);
-  for (const std::uint32_t i : plan_by_size(layout.pieces, by_).order)
-    orders[layout.page[i]].push_back(i);
   parallel_for(context_, pages, 1, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t p = begin; p < end; ++p)
-      found[p] = fill_group(layout.pieces, orders, p, open[p]);
+    for (std::size_t p = begin; p < end; ++p) found[p] = fill_group(groups[p].pieces, p);
   });
+  give_back(groups, layout);
   if (context_.cancelled()) return false;  // pages may not have been filled
-  layout.places.resize(layout.pieces.size());
+  layout.places.assign(layout.pieces.size(), {});
   std::vector<std::uint32_t> left;
   for (std::uint32_t p = 0; p < pages; ++p) {
-    const Nest& nest = found[p].nest;
-    for (std::uint32_t i = 0; i < layout.pieces.size(); ++i)
-      if (nest.places[i].placed) {
-        layout.page[i] = p;
-        layout.places[i] = nest.places[i];
-      }
-    left.insert(left.end(), nest.left_over.begin(), nest.left_over.end());
+    const std::vector<std::uint32_t>& ids = groups[p].ids;
+    for (std::size_t k = 0; k < ids.size(); ++k) layout.places[ids[k]] = found[p].nest.places[k];
+    for (const std::uint32_t k : found[p].nest.left_over) left.push_back(ids[k]);
     layout.layouts += found[p].layouts;
   }
   layout.page_sizes.assign(pages, {side_, side_});
-  return place_left_over(left, open, layout);
+  return place_left_over(std::move(left), layout);
 }
 
 std::int64_t OutlineFit::cells_of_pages(std::uint32_t pages) const {
@@ -184,15 +222,11 @@ NestSearchOptions OutlineFit::search_of(std::size_t page) const {
   return search;
 }
 
-NestSearchResult OutlineFit::fill_group(std::span<const Piece> pieces,
-                                        std::span<const std::vector<std::uint32_t>> orders,
-                                        std::size_t p, BitPage& page) const {
+NestSearchResult OutlineFit::fill_group(std::span<const Piece> pieces, std::size_t p) const {
   NestSearchResult filled;
   filled.layouts = 1;
-  NestPlan plan;
-  plan.order = orders[p];
-  plan.direction.assign(pieces.size(), kFree);
-  plan.cancel = context_.cancel;
+  const NestPlan plan = in_order(pieces, context_);
+  BitPage page(side_, side_, longest_run(pieces));
   place_pieces(pieces, plan, page, filled.nest);
   if (context_.cancelled()) return filled;
   if (filled.nest.left_over.empty() || options_.preset == PackPreset::fast) return filled;
@@ -203,37 +237,43 @@ NestSearchResult OutlineFit::fill_group(std::span<const Piece> pieces,
     return filled;
   NestSearchResult found = search_nest(pieces, plan, search, context_);
   filled.layouts += found.layouts;
-  if (!found.nest.left_over.empty() || found.nest.used_height > side_) return filled;
-  filled.nest = std::move(found.nest);
-  page.clear();
-  for (std::uint32_t i : plan.order) {
-    const NestPlace& at = filled.nest.places[i];
-    if (at.placed) page.put(pieces[i].masks[at.direction], at.at);
-  }
+  if (found.nest.left_over.empty() && found.nest.used_height <= side_)
+    filled.nest = std::move(found.nest);
   return filled;
 }
 
-bool OutlineFit::place_left_over(std::vector<std::uint32_t> left, std::vector<BitPage>& open,
-                                 OutlineLayout& layout) const {
+bool OutlineFit::place_left_over(std::vector<std::uint32_t> left, OutlineLayout& layout) const {
   std::stable_sort(left.begin(), left.end(), [&](std::uint32_t a, std::uint32_t b) {
     return layout.pieces[a].cells() > layout.pieces[b].cells();
   });
-  for (std::uint32_t i : left) {
-    bool placed = false;
-    for (std::uint32_t p = 0; p < open.size() && !placed; ++p) {
-      NestPlan one;
-      one.order = {i};
-      one.direction.assign(layout.pieces.size(), kFree);
-      Nest nest;
-      place_pieces(layout.pieces, one, open[p], nest);
-      placed = nest.left_over.empty();
-      if (!placed) continue;
-      layout.page[i] = p;
-      layout.places[i] = nest.places[i];
-    }
-    if (!placed || context_.cancelled()) return false;
+  if (left.empty()) return true;
+  std::vector<std::vector<std::uint32_t>> placed(layout.page_sizes.size());
+  std::vector<std::int64_t> room(placed.size(), std::int64_t{side_} * side_);  // in cells
+  for (std::uint32_t i = 0; i < layout.pieces.size(); ++i) {
+    if (!layout.places[i].placed) continue;
+    placed[layout.page[i]].push_back(i);
+    room[layout.page[i]] -= layout.pieces[i].cells();
   }
-  return true;
+  const std::int32_t longest = longest_run(layout.pieces);
+  for (std::uint32_t p = 0; p < placed.size() && !left.empty(); ++p) {
+    BitPage page(side_, side_, longest);
+    for (const std::uint32_t i : placed[p]) {
+      const NestPlace& at = layout.places[i];
+      page.put(layout.pieces[i].masks[at.direction], at.at);
+    }
+    std::erase_if(left, [&](std::uint32_t i) {
+      const std::int64_t cells = layout.pieces[i].cells();
+      if (cells > room[p] || context_.cancelled()) return false;
+      Nest nest;
+      place_pieces(std::span(&layout.pieces[i], 1), {{0}, {kFree}}, page, nest);
+      if (!nest.left_over.empty()) return false;
+      layout.page[i] = p;
+      layout.places[i] = nest.places[0];
+      room[p] -= cells;
+      return true;
+    });
+  }
+  return left.empty();
 }
 
 }  // namespace atlas::pack

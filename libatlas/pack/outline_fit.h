@@ -55,8 +55,8 @@ class OutlineFit {
   // failed is remembered, and they are not tried again at this scale or above.
   bool pack_at(double scale, std::uint32_t pages, OutlineLayout& layout);
 
-  // Packs the charts of one page again into the smallest page size that holds them.
-  void shrink_page(std::uint32_t page, OutlineLayout& layout) const;
+  // Packs the charts of each page again into the smallest page size that holds them.
+  void shrink_pages(OutlineLayout& layout) const;
 
  private:
   // Rasterises the pieces.
@@ -79,15 +79,12 @@ class OutlineFit {
   // packings.
   NestSearchOptions search_of(std::size_t page) const;
 
-  // Packs the charts orders[p], which come largest first, into page p.
-  NestSearchResult fill_group(std::span<const Piece> pieces,
-                              std::span<const std::vector<std::uint32_t>> orders, std::size_t p,
-                              BitPage& page) const;
+  // Packs these charts, which come largest first, into page p.
+  NestSearchResult fill_group(std::span<const Piece> pieces, std::size_t p) const;
 
   // Puts charts that found no room in their group's page into the first page that has room, largest
   // first.
-  bool place_left_over(std::vector<std::uint32_t> left, std::vector<BitPage>& open,
-                       OutlineLayout& layout) const;
+  bool place_left_over(std::vector<std::uint32_t> left, OutlineLayout& layout) const;
 
   std::span<const FitItem> items_;
   std::span<const ChartOutline> outlines_;
