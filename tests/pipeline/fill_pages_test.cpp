@@ -56,6 +56,20 @@ TEST(FillPages, ARoadIsCutForAPageOfFreeShape) {
   EXPECT_EQ(unwrap(grid(60, 6, 10, 1), free).charts.charts.size(), 1u);
 }
 
+// Several objects often get one density. Their pages are then much smaller than allowed, but no
+// emptier, and nothing is cut.
+TEST(FillPages, AGivenDensityIsReachedOnAFullPage) {
+  const Shape ring = torus(48, 24);
+  UnwrapOptions options{.page_size = 2048};
+  const UnwrappedMesh largest = unwrap(ring, options);
+  options.texels_per_unit = largest.texels_per_unit / 6;
+  const UnwrappedMesh given = unwrap(ring, options);
+  EXPECT_DOUBLE_EQ(given.texels_per_unit, options.texels_per_unit);
+  EXPECT_EQ(given.charts.charts.size(), largest.charts.charts.size());
+  EXPECT_GT(given.utilization, largest.utilization - 0.1) << "gutters take more";
+  EXPECT_LT(std::max(given.pages[0].width, given.pages[0].height), 2048 / 5);
+}
+
 // A single sheet as large as four pages.
 TEST(FillPages, ASheetIsCutForSeveralPages) {
   const UnwrapOptions four{.pages = 4, .page_size = 256};
