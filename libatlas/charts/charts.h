@@ -17,7 +17,9 @@ struct MeshView {
   std::span<const Vec3f> positions = {};          // finite
   std::span<const std::uint32_t> indices = {};    // 3 a triangle
   std::span<const std::uint32_t> materials = {};  // 1 a triangle, or empty: all alike
-  std::span<const float> density = {};  // relative linear texel density a triangle (> 0), or empty
+  // Relative linear texel density, finite and > 0: 1 a triangle, or empty. A common factor scales
+  // the uvs and changes nothing else.
+  std::span<const float> density = {};
   std::span<const Vec2f> texcoords = {};  // only for ChartOptions::keep_uv_charts
   // 3 a triangle, likewise; empty with one texcoord a position: those of `indices`. An index out of
   // range: that corner has none.
