@@ -78,7 +78,8 @@ struct TopologyOptions {
 
 // Builds the working copy of a mesh, in time linear in the number of triangles. Edges of more than
 // two triangles are linked in the pairs that continue each other best (see FanPairing), and
-// otherwise left open. An edge that no orientation satisfies (as on a Möbius strip) is cut.
+// otherwise left open. Triangles that agree with each other are turned together or not at all, and
+// an edge that no orientation satisfies then (as on a Möbius strip) is cut.
 // Duplicate triangles (with the same three vertices) are linked to their original only where the
 // two are turned against each other and nothing else continues them. Errors: bad_input for an index
 // out of range, a position that is not finite, no triangle, or wrong materials or densities;
