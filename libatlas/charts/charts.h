@@ -47,7 +47,8 @@ struct ChartOptions {
   // Width / height of the page that the given texcoords run over from 0 to 1; 1e-6..1e6.
   double uv_aspect = 1;
   // The same, one for each id of MeshView::materials, if their pages differ in shape. Triangles of
-  // other ids, and all if this is empty, have uv_aspect.
+  // other ids, and all if this is empty, have uv_aspect. No given chart continues across a border
+  // of materials whose aspects differ, also where split_at_materials is off.
   std::vector<double> material_uv_aspects = {};
   ChartPreset preset = ChartPreset::standard;
   // A chart so large that its smallest rectangle decides the page's size is cut across its limbs

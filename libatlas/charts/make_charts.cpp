@@ -301,8 +301,8 @@ Result<ChartSet> make_charts(const MeshView& mesh, const ChartOptions& options,
     texcoord_indices = usable_texcoords(given);
     given.texcoord_indices = texcoord_indices;
   }
-  Result<Topology> built =
-      build_topology(given, {options.split_at_materials, options.keep_uv_charts}, context);
+  Result<Topology> built = build_topology(
+      given, {options.split_at_materials, options.keep_uv_charts, uv_aspects(options)}, context);
   if (!built.ok()) return built.status();
   const Topology& topology = *built;
   const RelativeDensity relative = relative_density(mesh.density);

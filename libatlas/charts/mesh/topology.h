@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "libatlas/charts/charts.h"
+#include "libatlas/charts/mesh/uv_aspects.h"
 #include "libatlas/core/context.h"
 #include "libatlas/core/half_edge.h"
 #include "libatlas/core/status.h"
@@ -73,7 +74,9 @@ inline double edge_length(const Topology& topology, std::uint32_t half_edge) {
 // MeshView::seams.
 struct TopologyOptions {
   bool cut_at_materials = true;  // where MeshView::materials differ
-  bool cut_at_uv_seams = false;  // where the corners' texcoords differ
+  // Where the corners' texcoords differ, or the aspects of their pages.
+  bool cut_at_uv_seams = false;
+  UvAspects uv_aspects = {};  // for cut_at_uv_seams
 };
 
 // Builds the working copy of a mesh, in time linear in the number of triangles. Edges of more than
