@@ -71,6 +71,25 @@ TEST(Density, NoFactorCutsOrStretchesCharts) {
   }
 }
 
+// Between powers of two, lengths and areas in uv are up to twice and four times those of the
+// surface.
+TEST(Density, FactorsBetweenPowersOfTwoJoinTheSameFragments) {
+  for (const Shape& shape : {noisy(icosphere(3), 0.03, 5), noisy(torus(24, 10), 0.03, 4),
+                             noisy(sphere(22, 12), 0.04, 3), noisy(icosphere(3), 0.05, 9)}) {
+    const std::vector<float> even(shape.triangle_count(), 1);
+    ChartOptions best;
+    best.preset = ChartPreset::best;
+    for (const ChartOptions& options : {ChartOptions{}, best}) {
+      const ChartSet plain = dense_charts(shape, even, options);
+      for (const double factor : {1.25, 1.9375}) {
+        const ChartSet scaled = dense_charts(shape, times(even, factor), options);
+        EXPECT_EQ(scaled.charts.size(), plain.charts.size()) << shape.name << ' ' << factor;
+        EXPECT_EQ(scaled.triangle_chart, plain.triangle_chart) << shape.name << ' ' << factor;
+      }
+    }
+  }
+}
+
 // A part of a mesh may get hardly any texels.
 TEST(Density, AThinPartIsFlattenedLikeTheOthers) {
   const Shape one = noisy(grid(20, 20), 0.01, 3);
