@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "apps/atlas-pack/commands.h"
+#include "apps/atlas-pack/far_texcoord.h"
 #include "apps/atlas-pack/mesh_obj.h"
 #include "apps/atlas-pack/preview.h"
 #include "apps/atlas-pack/uv_charts.h"
@@ -259,6 +260,7 @@ Result<PackedAtlas> run_mesh(const PackCommand& c, const Context& context) {
         fmt::format("{}: has no uvs (atlas-export --charts-only makes some)", c.input.string()));
   UvCharts charts = find_charts(scene);
   make_uniform(scene, double(c.page_side) * c.page_side * c.pages, charts);
+  if (Status s = check_corners(c, charts, context); !s.ok()) return s;
   if (charts.without_uv > 0)
     context.say(fmt::format("triangles without uvs, which get none: {}", charts.without_uv));
   if (charts.without_area > 0)

@@ -204,6 +204,19 @@ bool reachable(const ChartPlacement& p, Vec2d size) {
   return true;
 }
 
+// Whether a placement lies on a page that can exist, with a turn of a rotation.
+Status check_turn(const ChartPlacement& p) {
+  constexpr double kRounding = 1e-5;  // of cosines and sines; a hundredth of a texel on a page
+  if (p.page < 0)
+    return {ErrorCode::bad_input,
+            fmt::format("chart {}: its page is {} (at least 0)", p.chart, p.page)};
+  if (!(std::fabs(std::hypot(p.cosine, p.sine) - 1) <= kRounding))
+    return {ErrorCode::bad_input,
+            fmt::format("chart {}: cosine {} and sine {} of its turn are not those of an angle",
+                        p.chart, p.cosine, p.sine)};
+  return {};
+}
+
 Status check(const ChartLight& light, std::span<const ChartPlacement> placements,
              const BakeOptions& o) {
   if (o.page_width < 1 || o.page_width > kLargest || o.page_height < 1 || o.page_height > kLargest)
@@ -231,6 +244,7 @@ Status check(const ChartLight& light, std::span<const ChartPlacement> placements
               fmt::format("chart {}: its box {} x {} at ({}, {}) with {} texels of gutter leaves "
                           "the page of {} x {}",
                           p.chart, p.width, p.height, p.x, p.y, pad, o.page_width, o.page_height)};
+    if (Status s = check_turn(p); !s.ok()) return s;
     if (!(p.texels_per_unit.x > 0) || !(p.texels_per_unit.y > 0))
       return {ErrorCode::bad_input,
               fmt::format("chart {}: its texel density is not above 0", p.chart)};

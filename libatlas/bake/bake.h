@@ -56,9 +56,10 @@ struct BakedPage {
 // of the charts. Contested texels are counted, and reported through Context::warn.
 // Texels that belong to no chart take colours from around them in `display`, for the coarser mip
 // levels that a viewer may build. In `linear` they are black.
-// Errors: bad_option; bad_input if a placement names no chart, if its box with the pad leaves the
-// page, if its density is not above 0 or puts the chart too far off its box, or if light is not
-// finite (check_light); cancelled.
+// Errors: bad_option; bad_input if a placement names no chart or no page, if its box with the pad
+// leaves the page, if its cosine and sine are not those of an angle (to 1e-5), if its density is
+// not above 0 or puts the chart too far off its box, or if chart or light are not usable
+// (check_light); cancelled.
 Result<BakedPage> bake_page(const ChartLight& light, std::span<const ChartPlacement> placements,
                             const BakeOptions& options, const Context& context);
 

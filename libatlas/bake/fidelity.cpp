@@ -170,6 +170,19 @@ struct SampleMaker {
   }
 };
 
+// Whether every triangle has a chart and uvs. Samples lie on all triangles, whatever was placed.
+Status check_triangles(const ChartSet& charts) {
+  const auto beyond = [](const std::vector<std::uint32_t>& ids, std::size_t end) {
+    return !ids.empty() && *std::max_element(ids.begin(), ids.end()) >= end;
+  };
+  if (!beyond(charts.triangle_chart, charts.charts.size()) &&
+      !beyond(charts.triangle_uv, charts.uvs.size()))
+    return {};
+  return {ErrorCode::bad_input,
+          fmt::format("triangle_chart or triangle_uv reaches beyond the {} charts or {} uvs",
+                      charts.charts.size(), charts.uvs.size())};
+}
+
 }  // namespace
 
 struct FidelityMeter::State {
@@ -186,6 +199,7 @@ Result<FidelityMeter> FidelityMeter::make(const ChartLight& light,
                                           std::span<const ChartPlacement> placements,
                                           const FidelityOptions& options, const Context& context) {
   if (Status s = check_scene_of(light); !s.ok()) return s;
+  if (Status s = check_triangles(light.charts); !s.ok()) return s;
   std::vector<std::int64_t> placed(light.charts.charts.size(), -1);
   for (std::size_t i = 0; i < placements.size(); ++i) {
     if (placements[i].chart >= placed.size())

@@ -17,7 +17,9 @@ struct MeshView {
   std::span<const Vec3f> positions = {};          // finite
   std::span<const std::uint32_t> indices = {};    // 3 a triangle
   std::span<const std::uint32_t> materials = {};  // 1 a triangle, or empty: all alike
-  std::span<const float> density = {};  // relative linear texel density a triangle (> 0), or empty
+  // Relative linear texel density, finite and > 0: 1 a triangle, or empty. A common factor scales
+  // the uvs and changes nothing else.
+  std::span<const float> density = {};
   std::span<const Vec2f> texcoords = {};  // only for ChartOptions::keep_uv_charts
   // 3 a triangle, likewise; empty with one texcoord a position: those of `indices`. An index out of
   // range: that corner has none.
@@ -45,7 +47,8 @@ struct ChartOptions {
   // Width / height of the page that the given texcoords run over from 0 to 1; 1e-6..1e6.
   double uv_aspect = 1;
   // The same, one for each id of MeshView::materials, if their pages differ in shape. Triangles of
-  // other ids, and all if this is empty, have uv_aspect.
+  // other ids, and all if this is empty, have uv_aspect. No given chart continues across a border
+  // of materials whose aspects differ, also where split_at_materials is off.
   std::vector<double> material_uv_aspects = {};
   ChartPreset preset = ChartPreset::standard;
   // A chart so large that its smallest rectangle decides the page's size is cut across its limbs

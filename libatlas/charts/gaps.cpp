@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "libatlas/charts/chart_set_check.h"
 #include "libatlas/charts/totals.h"
 #include "libatlas/core/parallel.h"
 #include "libatlas/param/halfedges.h"
@@ -73,9 +74,12 @@ Status check(const MeshView& mesh, std::span<const double> clearance, const Char
   if (clearance.size() != charts.charts.size())
     return {ErrorCode::bad_input, fmt::format("gaps: {} clearances for {} charts", clearance.size(),
                                               charts.charts.size())};
-  if (charts.triangle_uv.size() != mesh.indices.size())
-    return {ErrorCode::bad_input, "gaps: the charts are not those of the mesh"};
-  return {};
+  for (std::size_t c = 0; c < clearance.size(); ++c) {
+    if (!(clearance[c] >= 0))
+      return {ErrorCode::bad_input,
+              fmt::format("gaps: the clearance of chart {} is {} (at least 0)", c, clearance[c])};
+  }
+  return check_chart_set(mesh, charts, "gaps");
 }
 
 // Calls look(c) for every chart that has a clearance and is large enough for it. Returns the sums

@@ -21,7 +21,7 @@ struct GapReport {
 };
 
 struct GapLimits {
-  // One per chart, in units of its uvs, such as the distance across two texels. Charts whose
+  // One per chart, in units of its uvs, such as the distance across two texels; >= 0. Charts whose
   // clearance is 0, or more than a fifth of the square root of their area, are not examined.
   std::span<const double> clearance = {};
   double max_stretch = 1.25;  // > 1, see ChartOptions::max_stretch
@@ -29,17 +29,16 @@ struct GapLimits {
 
 // Measures how much of the charts' borders is closer than the clearance (see GapLimits) to another
 // part of the same chart, although both are far apart on the surface: more than three clearances.
-// Changes nothing. Errors: bad_input (not one clearance per chart; charts of another mesh);
-// cancelled.
+// Changes nothing. Errors: bad_input (not one clearance per chart, or one below 0 or not a number;
+// charts of another mesh, or whose ranges and indices contradict each other); cancelled.
 Result<GapReport> measure_gaps(const MeshView& mesh, std::span<const double> clearance,
                                const ChartSet& charts, const Context& context);
 
 // Widens such gaps by moving the border back on both sides, as far as the chart stays injective and
 // within limits.max_stretch (or its present stretch). Charts keep their triangles and seams; their
 // uvs, size and distortion change a little, and so does the total. Given charts (Chart::kept) are
-// not examined. The result is the same for every thread count. Errors: bad_input (not one clearance
-// per chart; charts of another mesh) and bad_option (max_stretch), with the charts unchanged;
-// cancelled, with some of them widened.
+// not examined. The result is the same for every thread count. Errors: bad_input (as measure_gaps)
+// and bad_option (max_stretch), with the charts unchanged; cancelled, with some of them widened.
 Result<GapReport> widen_gaps(const MeshView& mesh, const GapLimits& limits, ChartSet& charts,
                              const Context& context);
 

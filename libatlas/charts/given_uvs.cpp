@@ -85,12 +85,11 @@ class GivenChart {
     return missing;
   }
 
-  // Returns width / height of the page of the chart with this triangle. No page is divided among
-  // charts of several shapes, so all of its triangles have that page.
+  // Returns width / height of the page of the chart with this triangle. All of its triangles have
+  // pages of that shape, since the topology is cut where shapes differ.
   double page_aspect(std::uint32_t triangle) const {
-    const std::vector<double>& aspects = input_.options.material_uv_aspects;
     const std::uint32_t material = mesh_.materials.empty() ? 0 : mesh_.materials[triangle];
-    return material < aspects.size() ? aspects[material] : input_.options.uv_aspect;
+    return uv_aspects(input_.options).of(material);
   }
 
   // Returns the surface area, times density squared.

@@ -14,6 +14,7 @@
 #include "libatlas/charts/mesh/noise.h"
 #include "libatlas/charts/mesh/topology.h"
 #include "libatlas/charts/parts.h"
+#include "libatlas/charts/relative_density.h"
 #include "libatlas/charts/totals.h"
 #include "libatlas/core/clock.h"
 #include "libatlas/core/degrees.h"
@@ -84,8 +85,9 @@ std::vector<FlatChart> keep_charts(const Work& work, const Context& context, Cha
 // Gathers the flat charts into one ChartSet.
 class Assembler {
  public:
-  Assembler(const MeshView& mesh, const Topology& topology, ChartSet& set)
-      : mesh_(mesh), topology_(topology), set_(set), unscale_(1 / topology.scale) {}
+  // `density`: the factor that was taken out of the densities.
+  Assembler(const MeshView& mesh, const Topology& topology, double density, ChartSet& set)
+      : mesh_(mesh), topology_(topology), set_(set), unscale_(density / topology.scale) {}
 
   void run(std::vector<FlatChart>& charts) {
     const std::size_t n = topology_.triangle_count();
@@ -300,10 +302,12 @@ Result<ChartSet> make_charts(const MeshView& mesh, const ChartOptions& options,
     texcoord_indices = usable_texcoords(given);
     given.texcoord_indices = texcoord_indices;
   }
-  Result<Topology> built =
-      build_topology(given, {options.split_at_materials, options.keep_uv_charts}, context);
+  Result<Topology> built = build_topology(
+      given, {options.split_at_materials, options.keep_uv_charts, uv_aspects(options)}, context);
   if (!built.ok()) return built.status();
   const Topology& topology = *built;
+  const RelativeDensity relative = relative_density(mesh.density);
+  given.density = relative.values;
   ChartSet set;
   count_defects(topology.defects, set.repairs);
   for (const float area : topology.areas) set.surface_area += area;
@@ -321,7 +325,7 @@ Result<ChartSet> make_charts(const MeshView& mesh, const ChartOptions& options,
                                       : cut_charts({topology, given, options}, rest, set);
   if (context.cancelled()) return Status::cancelled();
   return_freed_memory();
-  Assembler(mesh, topology, set).run(charts);
+  Assembler(mesh, topology, relative.factor, set).run(charts);
   set.seam_length = seam_length(topology, set);
   set.distortion = total_distortion(set.charts);
   set.timing.parameterization_cpu = own_cpu_seconds() - start - set.timing.segmentation_cpu;

@@ -10,6 +10,7 @@
 #include <numeric>
 #include <utility>
 
+#include "libatlas/charts/chart_set_check.h"
 #include "libatlas/charts/filling/line_cut.h"
 #include "libatlas/charts/flattening/part_of_chart.h"
 #include "libatlas/charts/totals.h"
@@ -131,7 +132,9 @@ class Rebuilder {
     fresh_.uvs.clear();
     fresh_.uv_vertex.clear();
     opposite_.assign(old.triangle_chart.size(), 0);
-    for (const std::uint32_t t : old.flipped_triangles) opposite_[t] = 1;
+    for (const std::uint32_t t : old.flipped_triangles) {
+      if (t < opposite_.size()) opposite_[t] = 1;
+    }
   }
 
   void keep(const Chart& old) {
@@ -333,12 +336,15 @@ Status check(const MeshView& mesh, const TileLimits& limits, const ChartSet& cha
       return {ErrorCode::bad_input,
               fmt::format("tiles: the limit of chart {} is {} (above 0)", c, limits.sides[c])};
   }
-  if (charts.triangle_uv.size() != mesh.indices.size())
-    return {ErrorCode::bad_input, "tiles: the charts are not those of the mesh"};
   if (!(limits.max_stretch > 1))
     return {ErrorCode::bad_option,
             fmt::format("tiles: max_stretch is {} (above 1)", limits.max_stretch)};
-  return {};
+  if (charts.triangle_chart.size() != mesh.indices.size() / 3)
+    return {ErrorCode::bad_input,
+            fmt::format("tiles: the charts are not those of the mesh: {} triangle_chart for {} "
+                        "triangles",
+                        charts.triangle_chart.size(), mesh.indices.size() / 3)};
+  return check_chart_set(mesh, charts, "tiles");
 }
 
 }  // namespace

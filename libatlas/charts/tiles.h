@@ -25,8 +25,9 @@ struct TileLimits {
 // (Chart::kept). Each piece is connected by edges. Cone and axis stay the parent's; distortion is
 // measured again, and so is the total. Charts within their limit keep their order; pieces take the
 // place of their parent. Returns how many charts were cut. The result is the same for every thread
-// count. Errors: bad_input (not one limit per chart, or one that is not above 0; charts of
-// another mesh); bad_option (max_stretch); cancelled. The charts are then unchanged.
+// count. Errors: bad_input (not one limit per chart, or one that is not above 0; charts of another
+// mesh, or whose ranges and indices contradict each other); bad_option (max_stretch); cancelled.
+// The charts are then unchanged.
 Result<std::size_t> cut_to_limits(const MeshView& mesh, const TileLimits& limits, ChartSet& charts,
                                   const Context& context);
 

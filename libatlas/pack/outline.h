@@ -36,7 +36,8 @@ struct OutlineOptions {
   std::int32_t padding = 1;
   std::int32_t border = 0;     // free texels along the page's edges, in addition to the padding
   std::int32_t alignment = 1;  // charts own whole cells of alignment × alignment texels
-  // Maximum number of directions tried: multiples of 360/rotations degrees. At most 64.
+  // Maximum number of directions tried, in multiples of 360/rotations degrees; 1, 2, 4 or a
+  // multiple of 4 up to 64.
   std::uint32_t rotations = 4;
   PackPreset preset = PackPreset::standard;
   double time_budget = 1.0;  // of `best`: wall time in seconds

@@ -33,7 +33,7 @@ std::vector<std::uint32_t> list_offenders(const LocalMesh& mesh, const Injectivi
 }  // namespace
 
 bool is_within(const Distortion& distortion, double bound) {
-  return std::max(distortion.stretch_999, distortion.stretch_l2) <= bound;
+  return distortion.stretch_999 <= bound && distortion.stretch_l2 <= bound;  // false for NaN
 }
 
 std::vector<std::uint32_t> beyond_bound(std::span<const double> stretch, double bound) {

@@ -1,9 +1,13 @@
 #include "libatlas/param/parameterize.h"
 
 #include <algorithm>
+#include <cmath>
+#include <cstdlib>
 #include <limits>
 #include <optional>
+#include <span>
 #include <utility>
+#include <vector>
 
 #include "libatlas/core/glm_bridge.h"
 #include "libatlas/param/arap_solver.h"
@@ -29,9 +33,54 @@ std::optional<Distortion> project(const LocalMesh& mesh, Vec3d axis, double boun
   return d;
 }
 
+// Up to this power of two, and down to its inverse, the fourth powers of lengths, and of much
+// shorter ones beside them, are doubles with all their digits.
+constexpr int kUsualPower = 100;
+
+// Returns the power of two by which lengths are divided if the largest has this magnitude.
+int excess_power(double largest) {
+  if (!(largest > 0)) return 0;
+  const int power = std::ilogb(largest);
+  return std::abs(power) <= kUsualPower ? 0 : power;
+}
+
+double largest_coordinate(const Vec3d& p) {
+  return std::max({std::abs(p.x), std::abs(p.y), std::abs(p.z)});
+}
+
+Vec3d divided(const Vec3d& p, int power) {
+  return {std::ldexp(p.x, -power), std::ldexp(p.y, -power), std::ldexp(p.z, -power)};
+}
+
 Vec3d axis_for(const LocalMesh& mesh, const FlattenOptions& options) {
   const Vec3d& axis = options.axis;
-  return axis.x != 0 || axis.y != 0 || axis.z != 0 ? axis : mean_normal(mesh);
+  const double largest = largest_coordinate(axis);
+  const bool usable = largest > 0 && std::isfinite(axis.x + axis.y + axis.z);
+  return usable ? divided(axis, excess_power(largest)) : mean_normal(mesh);
+}
+
+// Flattens the mesh in a unit of 2^power.
+ParamResult flatten_in_unit(const LocalMesh& mesh, ParamOptions options, int power,
+                            ParamWorkspace& workspace) {
+  std::vector<Vec3d> positions(mesh.positions.size());
+  for (std::size_t v = 0; v < positions.size(); ++v) {
+    positions[v] = divided(mesh.positions[v], power);
+  }
+  const auto in_unit = [](std::span<const Vec2d> uvs, int by) {
+    std::vector<Vec2d> scaled;
+    for (const Vec2d uv : uvs) scaled.push_back({std::ldexp(uv.x, by), std::ldexp(uv.y, by)});
+    return scaled;
+  };
+  LocalMesh near = mesh;
+  near.positions = positions;
+  const std::vector<Vec2d> start = in_unit(options.start.uvs, -power);
+  options.start.uvs = start;
+  options.min_altitude = std::ldexp(options.min_altitude, -power);
+  ParamResult r = flatten_disc(near, {options}, workspace);
+  r.uvs = in_unit(r.uvs, power);
+  r.distortion.surface_area = std::ldexp(r.distortion.surface_area, 2 * power);
+  r.distortion.uv_area = std::ldexp(r.distortion.uv_area, 2 * power);
+  return r;
 }
 
 ParamResult with_room(const LocalMesh& mesh) {
@@ -149,6 +198,13 @@ ParamResult join_flat_parts(const LocalMesh& mesh, const FlatParts& parts,
 
 ParamResult parameterize(const LocalMesh& mesh, const ParamOptions& options,
                          ParamWorkspace& workspace) {
+  if (mesh.triangles.empty()) return param::with_room(mesh);
+  double largest = 0;
+  for (std::size_t v = 0; v < mesh.positions.size(); ++v) {
+    largest = std::max(largest, param::largest_coordinate(mesh.positions[v]));
+  }
+  const int power = param::excess_power(largest);
+  if (power != 0) return param::flatten_in_unit(mesh, options, power, workspace);
   return param::flatten_disc(mesh, {options}, workspace);
 }
 

@@ -22,7 +22,8 @@ enum class ParamMethod {
 struct ParamOptions {
   double max_stretch = 1.25;  // bound on Distortion::stretch_999 and stretch_l2; > 1
   ParamMethod method = ParamMethod::automatic;
-  Vec3d axis = {};              // of the projection; (0, 0, 0): the mean normal
+  // Of the projection, of any length; (0, 0, 0), or not finite: the mean normal.
+  Vec3d axis = {};
   IsometricStart start = {};    // what the isometric solver starts from
   int iterations = 3;           // local/global steps before the bound is checked
   int squeeze_iterations = 12;  // most reweighted steps, if the bound is missed
@@ -52,7 +53,9 @@ struct ParamResult {
 // Flattens a chart. The mesh must be a disc (see local_mesh.h); other connected meshes are
 // flattened too, but may need cuts that no offender indicates. Deterministic; reentrant with one
 // workspace per thread. A single triangle always succeeds with stretch 1; a triangle without area
-// gets min_altitude.
+// gets min_altitude. Without any triangle, all uvs are (0, 0), neither injective nor within the
+// bound. Lengths may have any magnitude, but the areas of the distortion become 0 or infinite where
+// doubles cannot hold them.
 ParamResult parameterize(const LocalMesh& mesh, const ParamOptions& options,
                          ParamWorkspace& workspace);
 

@@ -125,6 +125,20 @@ std::string on_black(const ExportReport& report) {
       double(report.luminance.percentile99), report.exposure_white);
 }
 
+// Whether given charts are hardly larger than single triangles. Two triangles a chart are usual:
+// those of quads in maps of light.
+bool keeps_crumbs(const ExportReport& report) {
+  constexpr std::uint64_t kMany = 256;
+  return report.repairs.kept_charts >= kMany && 2 * report.repairs.kept_charts > report.triangles;
+}
+
+std::string on_crumbs(const ExportReport& report) {
+  return fmt::format(
+      "ChartOptions::keep_uv_charts kept {} charts of {} triangles (if texture coordinates of "
+      "neighbours differ by rounding, weld them with a tolerance, or leave it out)",
+      report.repairs.kept_charts, report.triangles);
+}
+
 // Returns the display value of grey light.
 float shown(const ExportReport& report, double luminance) {
   const auto v = static_cast<float>(luminance);
@@ -151,6 +165,7 @@ std::vector<std::string> advice_on(const ExportReport& report, const ExportOptio
         "ChartOptions::keep_uv_charts kept no chart: the scene's texture coordinates are missing, "
         "flipped or "
         "lie on each other (leave it out for charts of all new borders)");
+  if (options.charts.keep_uv_charts && keeps_crumbs(report)) lines.push_back(on_crumbs(report));
   if (report.triangles > 0 && report.surface_area == 0)
     lines.push_back(
         "no triangle has an area, so uvs say nothing (check how the scene was exported, and the "

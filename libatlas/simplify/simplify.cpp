@@ -9,6 +9,7 @@
 #include <numbers>
 #include <optional>
 
+#include "libatlas/charts/chart_set_check.h"
 #include "libatlas/core/glm_bridge.h"
 #include "libatlas/core/parallel.h"
 #include "libatlas/simplify/border_chains.h"
@@ -51,14 +52,6 @@ Status check_options(const SimplifyOptions& options) {
 
 Status check_input(const SimplifyInput& input) {
   const auto& [mesh, charts, texels_per_unit] = input;
-  const std::size_t triangles = mesh.indices.size() / 3;
-  if (charts.triangle_uv.size() != mesh.indices.size() ||
-      charts.chart_triangles.size() != triangles) {
-    return bad_input("simplify: the charts are not those of the mesh");
-  }
-  if (charts.uv_vertex.size() != charts.uvs.size()) {
-    return bad_input("simplify: uvs and uv_vertex differ in size");
-  }
   if (texels_per_unit.size() != charts.charts.size()) {
     return bad_input(fmt::format("simplify: {} texel densities for {} charts",
                                  texels_per_unit.size(), charts.charts.size()));
@@ -69,32 +62,7 @@ Status check_input(const SimplifyInput& input) {
           fmt::format("simplify: chart {} has {} texels a unit", c, texels_per_unit[c]));
     }
   }
-  for (const std::uint32_t v : charts.uv_vertex) {
-    if (v >= mesh.positions.size()) {
-      return bad_input(
-          fmt::format("simplify: uv_vertex {} of {} positions", v, mesh.positions.size()));
-    }
-  }
-  for (std::size_t c = 0; c < charts.charts.size(); ++c) {
-    const Chart& chart = charts.charts[c];
-    if (std::size_t{chart.first_triangle} + chart.triangle_count > triangles ||
-        std::size_t{chart.first_uv} + chart.uv_count > charts.uvs.size()) {
-      return bad_input(fmt::format("simplify: chart {} reaches beyond the chart set", c));
-    }
-    for (std::uint32_t i = 0; i < chart.triangle_count; ++i) {
-      const std::uint32_t t = charts.chart_triangles[chart.first_triangle + i];
-      for (int k = 0; k < 3 && t < triangles; ++k) {
-        const std::uint32_t uv = charts.triangle_uv[std::size_t{3} * t + k];
-        if (uv - chart.first_uv >= chart.uv_count) {
-          return bad_input(
-              fmt::format("simplify: triangle {} uses uv {} outside chart {}", t, uv, c));
-        }
-      }
-      if (t >= triangles)
-        return bad_input(fmt::format("simplify: chart {} lists triangle {}", c, t));
-    }
-  }
-  return {};
+  return check_chart_set(mesh, charts, "simplify");
 }
 
 // Twice the areas of a triangle in space and in uv.

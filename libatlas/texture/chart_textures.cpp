@@ -6,8 +6,10 @@
 #include <cmath>
 #include <memory>
 #include <mutex>
+#include <string_view>
 #include <utility>
 
+#include "libatlas/charts/chart_set_check.h"
 #include "libatlas/charts/chart_triangles.h"
 #include "libatlas/core/parallel.h"
 #include "libatlas/core/pool.h"
@@ -16,6 +18,8 @@
 
 namespace atlas {
 namespace {
+
+constexpr std::string_view kWho = "chart textures";  // in messages
 
 Status check(const TextureOptions& o) {
   const auto bad = [](std::string_view what, double value, std::string_view rule) {
@@ -199,13 +203,15 @@ void add_up(const std::vector<ChartOutcome>& outcomes, TextureResult& result) {
 Status check_scene_of(const ChartLight& light) {
   const std::size_t charted = light.charts.triangle_chart.size();
   const std::size_t triangles = light.sampler.scene().triangle_count();
-  if (charted == triangles) return {};
-  return {ErrorCode::bad_input,
-          fmt::format("the charts are of a mesh of {} triangles, and the scene has {}", charted,
-                      triangles)};
+  if (charted != triangles)
+    return {ErrorCode::bad_input,
+            fmt::format("the charts are of a mesh of {} triangles, and the scene has {}", charted,
+                        triangles)};
+  return check_chart_arrays(light.charts, 3 * triangles, kWho);
 }
 
 Status check_light(const ChartLight& light, std::uint32_t chart) {
+  if (Status s = check_chart(light.charts, chart, kWho); !s.ok()) return s;
   for (const std::uint32_t t : triangles_of(light.charts, light.charts.charts[chart])) {
     const int corner = light.sampler.bad_corner(t);
     if (corner == 3) continue;
@@ -233,6 +239,8 @@ Result<std::vector<double>> wanted_densities(const ChartLight& light, const Text
   if (Status s = check(options); !s.ok()) return s;
   if (Status s = check_scene_of(light); !s.ok()) return s;
   std::vector<double> densities(light.charts.charts.size());
+  for (std::size_t c = 0; c < densities.size(); ++c)
+    if (Status s = check_chart(light.charts, c, kWho); !s.ok()) return s;
   parallel_for(context, densities.size(), kGrain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t c = begin; c < end; ++c)
       densities[c] = wanted_density(light, options, light.charts.charts[c]);

@@ -22,12 +22,13 @@ struct ChartLight {
 };
 
 // Whether the charts are those of the sampler's scene, as far as the number of triangles tells.
-// Error: bad_input.
+// Error: bad_input, also if the charts' arrays are not as long as these triangles need.
 Status check_scene_of(const ChartLight& light);
 
-// Checks the light of a chart. Error: bad_input, which names triangle and vertex, if the light
-// times reflectance is not a number or is beyond 1e36. One such value would spread over the texels
-// around it.
+// Checks a chart of such a set and its light. Errors: bad_input if the chart reaches beyond the
+// set, or one of its triangles beyond the chart; bad_input, which names triangle and vertex, if the
+// light times reflectance is not a number or is beyond 1e36. One such value would spread over the
+// texels around it.
 Status check_light(const ChartLight& light, std::uint32_t chart);
 
 struct TextureOptions {
@@ -72,7 +73,8 @@ struct TextureResult {
 
 // Returns the texels per unit that stage 2 asks for, for each chart, before any limit of a page.
 // The density follows from the texel's length, and is raised if the chart's diffuse texture is
-// finer. Errors: bad_option, bad_input (see check_scene_of()), cancelled.
+// finer. Errors: bad_option; bad_input (see check_scene_of(), and check_light() for what it says
+// about charts); cancelled.
 Result<std::vector<double>> wanted_densities(const ChartLight& light, const TextureOptions& options,
                                              const Context& context);
 

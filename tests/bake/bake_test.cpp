@@ -8,6 +8,7 @@
 #include <random>
 
 #include "tests/bake/bake_fixture.h"
+#include "tests/charts/broken_charts.h"
 
 namespace atlas {
 namespace {
@@ -258,6 +259,11 @@ TEST(BakePage, RefusesWhatCannotBe) {
   EXPECT_EQ(code([](O&, P& p) { p.width = 0; }), ErrorCode::bad_input);
   EXPECT_EQ(code([](O&, P& p) { p.chart = 7; }), ErrorCode::bad_input);
   EXPECT_EQ(code([](O&, P& p) { p.texels_per_unit.y = 0; }), ErrorCode::bad_input);
+  EXPECT_EQ(code([](O&, P& p) { p.page = -1; }), ErrorCode::bad_input);
+  EXPECT_EQ(code([](O&, P& p) { p.cosine = p.sine = 0; }), ErrorCode::bad_input);
+  EXPECT_EQ(code([](O&, P& p) { p.cosine = 5; }), ErrorCode::bad_input);
+  EXPECT_EQ(code([](O&, P& p) { p.cosine = 1.00002; }), ErrorCode::bad_input);
+  EXPECT_EQ(code([](O&, P& p) { p.cosine = 0.99999999; }), ErrorCode::ok);  // rounded to a float
   EXPECT_EQ(code([](O& o, P&) { o.shifts = 0; }), ErrorCode::bad_option);
   EXPECT_EQ(code([](O& o, P&) { o.shifts = 65; }), ErrorCode::bad_option);
   EXPECT_EQ(code([](O& o, P&) { o.shifts = 64; }), ErrorCode::ok);
@@ -288,6 +294,26 @@ TEST(BakePage, RefusesPlacementsOfSeveralPagesAndChartsOfOtherScenes) {
   const ChartLight own{sampler, other.charts, kPlain};
   EXPECT_TRUE(wanted_densities(own, {}, {}).ok());
   EXPECT_EQ(wanted_densities(own, {.texel = 0}, {}).status().code(), ErrorCode::bad_option);
+}
+
+TEST(BakePage, RefusesChartsThatContradictThemselves) {
+  const LitShape good = make_sheet({1, 1, 2, 2}, [](double, double) { return shown(1); });
+  const ChartPlacement p = place(good.charts, 0, {20, 20}, {4, 4});
+  const LuminanceSampler sampler(good.scene, Quantity::illuminance);
+  for (const test::BrokenCharts& broken : test::broken_charts()) {
+    LitShape shape = good;
+    broken.damage(shape.charts);
+    const ChartLight light{sampler, shape.charts, kPlain};
+    EXPECT_EQ(bake(shape, {p}, small_page(32)).status().code(), ErrorCode::bad_input)
+        << broken.what;
+    EXPECT_EQ(size_chart_textures(light, {}, {}).status().code(), ErrorCode::bad_input)
+        << broken.what;
+    EXPECT_EQ(wanted_densities(light, {}, {}).status().code(), ErrorCode::bad_input) << broken.what;
+  }
+  // Vertices of uvs are not read.
+  LitShape shape = good;
+  shape.charts.uv_vertex.clear();
+  EXPECT_TRUE(bake(shape, {p}, small_page(32)).ok());
 }
 
 // Charts show their light however little of a texel they cover. They were once black.

@@ -275,6 +275,32 @@ TEST(GivenUvs, DensityScalesKeptCharts) {
   EXPECT_NEAR(set->distortion.stretch_l2, 1, 1e-5);
 }
 
+// The right half lies on a page that is twice as wide, at uvs that continue the left half's.
+TEST(GivenUvs, PagesOfDifferentShapesAreSeamsWhereMaterialsAreNot) {
+  Mesh mesh = mapped(grid(8, 8), [](Vec3f p) {
+    return Vec2f{p.x < 0.5f ? p.x : 0.25f + 0.5f * p.x, p.y};
+  });
+  for (std::uint32_t t = 0; t < mesh.indices.size() / 3; ++t)
+    mesh.materials.push_back(t / 2 % 8 / 4);
+  ChartOptions options;
+  options.split_at_materials = false;
+  options.material_uv_aspects = {1, 2};
+  const ChartSet apart = keep(mesh, options);
+  EXPECT_EQ(apart.repairs.kept_charts, 2u);
+  EXPECT_NEAR(apart.distortion.stretch_999, 1, 1e-5);
+  EXPECT_NEAR(apart.seam_length, 1, 1e-5);
+  options.material_uv_aspects = {1, 1};
+  const ChartSet together = keep(mesh, options);
+  EXPECT_EQ(together.repairs.kept_charts, 1u);
+  EXPECT_GT(together.distortion.stretch_999, 1.3);
+  // Materials beyond the list have uv_aspect.
+  options.material_uv_aspects = {2};
+  options.uv_aspect = 2;
+  EXPECT_EQ(keep(mesh, options).charts.size(), 1u);
+  options.uv_aspect = 1;
+  EXPECT_EQ(keep(mesh, options).charts.size(), 2u);
+}
+
 TEST(GivenUvs, SameBytesForAnyThreadCount) {
   Mesh mesh(together(torus(60, 30), moved(sphere(20, 10), 0.4, {3, 0, 0})));
   const ChartSet own = cut(mesh);

@@ -199,6 +199,69 @@ TEST(Topology, DenormalCoordinatesAreScaledToo) {
   EXPECT_EQ(set->distortion.degenerate, 0u);
 }
 
+// A strip of quads around a circle, with half a turn, or a tube that is closed so (a Klein bottle).
+Mesh half_turned(std::uint32_t along, std::uint32_t across, bool tube) {
+  Mesh mesh;
+  const std::uint32_t rows = across + (tube ? 0 : 1);
+  for (std::uint32_t i = 0; i < along; ++i) {
+    const double a = 2 * M_PI * i / along;
+    for (std::uint32_t j = 0; j < rows; ++j) {
+      const double b = 2 * M_PI * j / across, x = tube ? std::sin(b) : double(j) / across - 0.5,
+                   z = tube ? std::sin(2 * b) : 0, c = std::cos(a / 2), s = std::sin(a / 2);
+      const double r = 3 + c * x - s * z;
+      mesh.positions.push_back(
+          {float(r * std::cos(a)), float(r * std::sin(a)), float(s * x + c * z)});
+    }
+  }
+  const auto vertex = [&](std::uint32_t i, std::uint32_t j) {
+    if (i == along) return tube ? (2 * across - j) % across : across - j;
+    return i * rows + (tube ? j % across : j);
+  };
+  for (std::uint32_t i = 0; i < along; ++i) {
+    for (std::uint32_t j = 0; j < across; ++j) {
+      for (const auto& [di, dj] :
+           {std::pair{0u, 0u}, {1u, 0u}, {1u, 1u}, {0u, 0u}, {1u, 1u}, {0u, 1u}}) {
+        mesh.indices.push_back(vertex(i + di, j + dj));
+      }
+    }
+  }
+  return mesh;
+}
+
+std::vector<std::uint32_t> turned_triangles(const Topology& topology) {
+  std::vector<std::uint32_t> turned;
+  for (std::uint32_t t = 0; t < topology.triangle_count(); ++t) {
+    if (topology.flags[t] & Topology::kFlipped) turned.push_back(t);
+  }
+  return turned;
+}
+
+// A surface that cannot be oriented is cut where its triangles disagree in the input, and nowhere
+// else.
+TEST(Topology, WhatCannotBeOrientedIsCutWhereItDisagrees) {
+  for (const bool tube : {false, true}) {
+    const Mesh mesh = half_turned(120, 8, tube);
+    const Topology topology = topology_of(mesh);
+    EXPECT_EQ(topology.defects.misoriented_edges, 8u) << tube;
+    EXPECT_EQ(topology.component_count, 1u) << tube;
+    EXPECT_TRUE(turned_triangles(topology).empty()) << tube;
+    const auto open = std::count(topology.opposite.begin(), topology.opposite.end(), kNoIndex);
+    EXPECT_EQ(open, 2 * 8 + (tube ? 0 : 2 * 120)) << tube;
+  }
+}
+
+TEST(Topology, StrayTrianglesAreTurnedOnSuchSurfacesToo) {
+  for (const bool tube : {false, true}) {
+    Mesh mesh = half_turned(120, 8, tube);
+    const std::vector<std::uint32_t> stray{100, 500, 501, 502, 1000};
+    for (const std::uint32_t t : stray) std::swap(mesh.indices[3 * t], mesh.indices[3 * t + 1]);
+    const Topology topology = topology_of(mesh);
+    EXPECT_EQ(turned_triangles(topology), stray) << tube;
+    const auto open = std::count(topology.opposite.begin(), topology.opposite.end(), kNoIndex);
+    EXPECT_EQ(open, 2 * 8 + (tube ? 0 : 2 * 120)) << tube;
+  }
+}
+
 // Either of the two half-edges of an edge may be marked.
 TEST(Topology, SeamsAreNotLinked) {
   const Mesh mesh(icosphere(2));

@@ -332,6 +332,65 @@ TEST(Parameterize, ScaleChangesNothing) {
   }
 }
 
+// Areas are beyond what doubles hold there, but lengths and their ratios are not.
+TEST(Parameterize, NoUnitIsTooLongOrTooShort) {
+  Disc d = testing::make_cap(1.2, 16);
+  testing::add_radial_noise(d, 0.05 * testing::mean_edge(d), 3);
+  const std::vector<double> density(d.triangles.size(), 3.0);
+  for (const ParamMethod method : {ParamMethod::isometric, ParamMethod::planar}) {
+    for (const bool dense : {false, true}) {
+      const auto flatten = [&](const Disc& disc, const ParamOptions& options) {
+        ParamWorkspace workspace;
+        LocalMesh mesh = disc.view();
+        if (dense) mesh.density = density;
+        return parameterize(mesh, options, workspace);
+      };
+      const ParamResult plain = flatten(d, {.method = method, .min_altitude = 1e-6});
+      for (const int power : {-1000, -500, -120, 120, 333, 1000}) {
+        Disc scaled = d;
+        for (Vec3d& p : scaled.positions)
+          p = {std::ldexp(p.x, power), std::ldexp(p.y, power), std::ldexp(p.z, power)};
+        const ParamResult r =
+            flatten(scaled, {.method = method, .min_altitude = std::ldexp(1e-6, power)});
+        EXPECT_EQ(r.distortion.stretch_l2, plain.distortion.stretch_l2) << power;
+        EXPECT_EQ(r.within_bound, plain.within_bound) << power;
+        EXPECT_EQ(r.injective, plain.injective) << power;
+        EXPECT_EQ(r.distortion.uv_area, std::ldexp(plain.distortion.uv_area, 2 * power));
+        ASSERT_EQ(r.uvs.size(), plain.uvs.size());
+        for (std::size_t v = 0; v < r.uvs.size(); ++v) {
+          EXPECT_EQ(r.uvs[v].x, std::ldexp(plain.uvs[v].x, power)) << power;
+          EXPECT_EQ(r.uvs[v].y, std::ldexp(plain.uvs[v].y, power)) << power;
+        }
+      }
+    }
+  }
+}
+
+TEST(Parameterize, TheLengthOfTheAxisDoesNotMatter) {
+  const Disc d = testing::make_cap(0.4, 8);
+  const auto along = [&](Vec3d axis) {
+    return run(d, {.method = ParamMethod::planar, .axis = axis});
+  };
+  const ParamResult unit = along({0.5, 0, 1}), mean = along({});
+  for (const int power : {-1060, -700, -3, 700, 1020}) {
+    const ParamResult r = along({std::ldexp(0.5, power), 0, std::ldexp(1.0, power)});
+    EXPECT_EQ(r.uvs, unit.uvs) << power;
+  }
+  for (const double bad : {double(NAN), double(INFINITY)})
+    EXPECT_EQ(along({bad, 0, 1}).uvs, mean.uvs) << bad;
+}
+
+TEST(Parameterize, WithoutTrianglesNothingIsFlat) {
+  Disc d;
+  for (const std::size_t points : {0, 3}) {
+    d.positions.assign(points, Vec3d{1, 2, 3});
+    const ParamResult r = run(d);
+    EXPECT_EQ(r.uvs, std::vector<Vec2d>(points));
+    EXPECT_FALSE(r.injective || r.within_bound);
+    EXPECT_TRUE(r.offenders.empty());
+  }
+}
+
 TEST(Parameterize, FanOfAHundredThousandNeedles) {
   Disc d;
   const std::uint32_t n = 100000;

@@ -37,6 +37,21 @@ TEST(Advice, UsualResultsNeedNone) {
   EXPECT_TRUE(advice_on(report_of(16000, 64, 2048), options).empty());
 }
 
+TEST(Advice, KeptChartsOfSingleTrianglesAreNamed) {
+  ExportReport report;
+  ExportOptions options;
+  options.charts.keep_uv_charts = true;
+  report.surface_area = 1;
+  report.triangles = 800;
+  report.repairs.kept_charts = 782;
+  EXPECT_TRUE(holds(advice_on(report, options), "kept 782 charts of 800 triangles"));
+  report.repairs.kept_charts = 400;  // quads
+  EXPECT_TRUE(advice_on(report, options).empty());
+  report.triangles = 200;  // little can be said of few
+  report.repairs.kept_charts = 200;
+  EXPECT_TRUE(advice_on(report, options).empty());
+}
+
 TEST(Advice, ManyPagesNameLargerOnesThatHoldAsMuch) {
   ExportOptions options;
   EXPECT_TRUE(holds(advice_on(report_of(16000, 200, 2048), options),

@@ -137,6 +137,7 @@ class Absorber {
   }
 
   double piece_area(std::uint32_t k) const { return piece_area_[charts_[k].piece(topology_)]; }
+  double piece_target(std::uint32_t k) const { return piece_target_[charts_[k].piece(topology_)]; }
   bool small(std::uint32_t k) const { return area_[k] < kSmallArea * piece_area(k); }
 
   bool worth_a_try(std::uint32_t k) const {
@@ -178,8 +179,8 @@ class Absorber {
     std::vector<Run> runs;
     double whole = 0;
     for (const ChartNeighbour& n : neighbours) {
-      std::vector<BorderEdge> edges =
-          find_fitting_run(topology_, {charts_[k], charts_[n.chart]}, n.edges, kMostRunMisfit);
+      std::vector<BorderEdge> edges = find_fitting_run(
+          topology_, {charts_[k], charts_[n.chart]}, n.edges, kMostRunMisfit * density(k, n.chart));
       whole += length_of(n.edges);
       if (edges.size() == n.edges.size()) continue;
       runs.push_back({length_of(edges), &n, std::move(edges)});
@@ -200,7 +201,8 @@ class Absorber {
     const bool fragment = a.fragment || b.fragment;
     const bool said = neighbour.edges.size() >= kLeastFitted || !fragment;
     const double most = small(k) ? kMostSmallMisfit : said ? kMostMisfit : kMostShortMisfit;
-    if (joint.motion().misfit > most * room_) return false;
+    const double length = density(k, neighbour.chart);
+    if (joint.motion().misfit > most * room_ * length) return false;
     const Seam seam = seam_of(neighbour.edges);
     if (!small(k) && !fragment && seam.weight < kHidden * seam.length) return false;
     const double covered = a.distortion.uv_area + b.distortion.uv_area;
@@ -255,6 +257,7 @@ class Absorber {
       b = std::move(outcome.flat);
       a = FlatChart{};
       area_[into] += area_[k];
+      target_[into] += target_[k];
       outlines_[k] = outlines_[into] = {};
       return true;
     }
@@ -307,7 +310,7 @@ class Absorber {
         a.fragment || b.fragment ? std::min({patience_.fill, fill(a), fill(b)}) : kWholeFill;
     if (!(extent.covered < least * extent.box)) return true;
     const double waste = extent.box - a.box_area() - b.box_area();
-    return (small(k) || small(into)) && waste <= most_waste * piece_area(k);
+    return (small(k) || small(into)) && waste <= most_waste * piece_target(k);
   }
 
   static double fill(const FlatChart& chart) {
@@ -328,13 +331,27 @@ class Absorber {
   }
 
   void measure_areas() {
+    const std::span<const float> densities = input_.flatten.density;
     piece_area_.assign(topology_.component_count, 0);
+    piece_target_ = piece_area_;
     for (const FlatChart& chart : charts_) {
-      double area = 0;
-      for (const std::uint32_t t : chart.triangles) area += topology_.areas[t];
+      double area = 0, target = 0;
+      for (const std::uint32_t t : chart.triangles) {
+        const double density = densities.empty() ? 1 : densities[t];
+        area += topology_.areas[t];
+        target += topology_.areas[t] * density * density;
+      }
       area_.push_back(area);
+      target_.push_back(target);
       piece_area_[chart.piece(topology_)] += area;
+      piece_target_[chart.piece(topology_)] += target;
     }
+  }
+
+  // The mean density of two charts: how many times as long lengths are in uv as on the surface.
+  double density(std::uint32_t k, std::uint32_t into) const {
+    if (input_.flatten.density.empty()) return 1;
+    return std::sqrt((target_[k] + target_[into]) / (area_[k] + area_[into]));
   }
 
   const AbsorbInput& input_;
@@ -348,6 +365,8 @@ class Absorber {
   std::vector<std::uint8_t> candidate_;
   std::vector<double> area_;  // one per chart: surface area
   std::vector<double> piece_area_;
+  // The areas that uvs are to have: the same times densities squared.
+  std::vector<double> target_, piece_target_;
   std::vector<Outline> outlines_;  // one per chart; empty: not known
   // For each pair of charts, the number of triangles of the union that was tried last. The same
   // union would fail again.

@@ -244,7 +244,7 @@ class ChartJob {
     for (const std::uint32_t t : result_.offenders) {
       beyond += input_.topology.areas[chart_.triangles()[t]];
     }
-    return beyond > kWideShare * surface_area();
+    return beyond > kWideShare * chart_.surface_area(input_.topology);
   }
 
   bool beyond_cone() const {
@@ -265,13 +265,10 @@ class ChartJob {
     return divide(input_.topology, chart_, pair);
   }
 
-  double surface_area() const {
-    double area = 0;
-    for (const std::uint32_t t : chart_.triangles()) area += input_.topology.areas[t];
-    return area;
+  // In units of the uvs, which the density scales.
+  double min_altitude() const {
+    return kMinAltitude * std::sqrt(chart_.target_area(input_.topology));
   }
-
-  double min_altitude() const { return kMinAltitude * std::sqrt(surface_area()); }
 
   param::FlattenOptions flatten_options(std::size_t triangles) const {
     const ChartOptions& options = input_.options;
@@ -333,8 +330,8 @@ class ChartJob {
     result_.within_bound =
         result_.distortion.stretch_999 <= most && result_.distortion.stretch_l2 <= most;
     if (!result_.within_bound) return false;
-    const Injectivity check =
-        check_injectivity(mesh, result_.uvs, {.clearance = kTouching * std::sqrt(surface_area())});
+    const double root = std::sqrt(chart_.target_area(input_.topology));
+    const Injectivity check = check_injectivity(mesh, result_.uvs, {.clearance = kTouching * root});
     result_.injective = check.injective && check.close.empty();
     return true;
   }

@@ -190,15 +190,16 @@ class Linker {
   bool may_link(std::uint32_t g, std::uint32_t h) const {
     if (!mesh_.seams.empty() && (mesh_.seams[g] || mesh_.seams[h])) return false;
     const std::uint32_t s = g / 3, t = h / 3;
-    if (options_.cut_at_materials && !mesh_.materials.empty() &&
-        mesh_.materials[s] != mesh_.materials[t]) {
-      return false;
-    }
+    const bool border = !mesh_.materials.empty() && mesh_.materials[s] != mesh_.materials[t];
+    if (options_.cut_at_materials && border) return false;
     if (!options_.cut_at_uv_seams || mesh_.texcoord_indices.empty()) return true;
+    if (border && aspect(s) != aspect(t)) return false;
     const bool aligned = from(g) == from(h);
     return same_texcoord(g, aligned ? h : next_half_edge(h)) &&
            same_texcoord(next_half_edge(g), aligned ? next_half_edge(h) : h);
   }
+
+  double aspect(std::uint32_t t) const { return options_.uv_aspects.of(mesh_.materials[t]); }
 
   bool same_texcoord(std::uint32_t i, std::uint32_t j) const {
     const std::uint32_t a = mesh_.texcoord_indices[i], b = mesh_.texcoord_indices[j];

@@ -136,4 +136,19 @@ void LocalChart::take_density(std::span<const float> all) {
   for (const std::uint32_t t : triangles_) density.push_back(all[t]);
 }
 
+double LocalChart::surface_area(const Topology& topology) const {
+  double area = 0;
+  for (const std::uint32_t t : triangles_) area += topology.areas[t];
+  return area;
+}
+
+double LocalChart::target_area(const Topology& topology) const {
+  if (density.empty()) return surface_area(topology);
+  double area = 0;
+  for (std::size_t i = 0; i < triangles_.size(); ++i) {
+    area += topology.areas[triangles_[i]] * density[i] * density[i];
+  }
+  return area;
+}
+
 }  // namespace atlas

@@ -54,6 +54,10 @@ class LocalChart {
              std::span<const std::uint32_t> triangles);
   // Takes the density of its triangles from `all`: one per triangle of the topology, or empty.
   void take_density(std::span<const float> all);
+  // The area of the chart's surface in the topology's scaled units, and the area that its uvs are
+  // to have: each triangle's times its density squared.
+  double surface_area(const Topology& topology) const;
+  double target_area(const Topology& topology) const;
 
   std::span<const std::uint32_t> triangles() const { return triangles_; }
   LocalMesh mesh() const { return {positions.view(), corners, density, opposite}; }

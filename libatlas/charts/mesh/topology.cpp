@@ -115,21 +115,29 @@ void measure_triangles(Topology& topology) {
 
 // Numbers the pieces and finds the triangles that must be turned so that neighbours agree. Where no
 // choice agrees, the link is cut. Each piece keeps the orientation of most of its area.
+//
+// This is a union-find in which each triangle points to a lower one of its piece, or to itself.
+// Unlike a flood fill, it reads the mesh in order. Links whose triangles agree are joined before
+// the others. On a surface that cannot be oriented, what is cut then are links that disagreed in
+// the input, instead of links anywhere with half of the surface turned.
 class Pieces {
  public:
-  explicit Pieces(Topology& topology) : topology_(topology) {}
+  explicit Pieces(Topology& topology)
+      : topology_(topology),
+        triangles_(static_cast<std::uint32_t>(topology.triangle_count())),
+        lower_(topology.component) {}
 
   void run() {
-    if (topology_.defects.misoriented_edges == 0) return join();
-    const auto n = static_cast<std::uint32_t>(topology_.triangle_count());
-    topology_.component.assign(n, kNoIndex);
-    turned_.assign(n, 0);
-    for (std::uint32_t t = 0; t < n; ++t) {
-      if (topology_.component[t] == kNoIndex && !topology_.degenerate(t)) flood(t);
-    }
+    const bool mixed = topology_.defects.misoriented_edges > 0;
+    join_agreeing(mixed);
+    if (!mixed) return number();
+    turned_.assign(triangles_, 0);
+    join_disagreeing();
+    number();
+    choose_orientations();
     std::sort(topology_.fan_links.begin(), topology_.fan_links.end());
     cut_conflicts();
-    for (std::uint32_t t = 0; t < n; ++t) {
+    for (std::uint32_t t = 0; t < triangles_; ++t) {
       if (topology_.flags[t] & Topology::kFlipped) turn(t);
     }
     for (std::uint32_t& h : topology_.fan_links) {
@@ -142,58 +150,79 @@ class Pieces {
     return topology_.corner_vertex[h] == topology_.corner_vertex[o];
   }
 
-  // Where all triangles agree already, only the pieces have to be found. This is a union-find in
-  // which each triangle points to a lower one of its piece, or to itself. Unlike a flood fill, it
-  // reads the mesh in order.
-  void join() {
-    const auto n = static_cast<std::uint32_t>(topology_.triangle_count());
-    std::vector<std::uint32_t>& lower = topology_.component;
-    lower.resize(n);
+  void join_agreeing(bool mixed) {
+    lower_.resize(triangles_);
     const auto root = [&](std::uint32_t t) {
-      while (lower[t] != t) t = lower[t] = lower[lower[t]];
+      while (lower_[t] != t) t = lower_[t] = lower_[lower_[t]];
       return t;
     };
-    for (std::uint32_t t = 0; t < n; ++t) {
-      std::uint32_t own = lower[t] = t;
+    for (std::uint32_t t = 0; t < triangles_; ++t) {
+      std::uint32_t own = lower_[t] = t;
       for (std::uint32_t h = 3 * t; h < 3 * t + 3; ++h) {
         const std::uint32_t o = topology_.opposite[h];
-        if (o >= h) continue;  // kNoIndex is the largest
+        if (o >= h || (mixed && misoriented(h, o))) continue;  // kNoIndex is the largest
         const std::uint32_t other = root(o / 3);
-        lower[std::max(own, other)] = std::min(own, other);
+        lower_[std::max(own, other)] = std::min(own, other);
         own = std::min(own, other);
-      }
-    }
-    for (std::uint32_t t = 0; t < n; ++t) {
-      if (topology_.degenerate(t)) {
-        lower[t] = kNoIndex;
-      } else {
-        lower[t] = lower[t] == t ? topology_.component_count++ : lower[lower[t]];
       }
     }
   }
 
-  void flood(std::uint32_t seed) {
-    queue_.assign(1, seed);
-    topology_.component[seed] = topology_.component_count;
-    double kept = 0, turned = 0;
-    for (std::size_t i = 0; i < queue_.size(); ++i) {
-      const std::uint32_t t = queue_[i];
-      (turned_[t] ? turned : kept) += topology_.areas[t];
-      for (std::uint32_t h = 3 * t; h < 3 * t + 3; ++h) {
-        const std::uint32_t o = topology_.opposite[h];
-        if (o == kNoIndex || topology_.component[o / 3] != kNoIndex) continue;
-        topology_.component[o / 3] = topology_.component_count;
-        turned_[o / 3] = turned_[t] ^ (misoriented(h, o) ? 1 : 0);
-        queue_.push_back(o / 3);
+  // Joins over the other links, with each triangle turned against the one that it points to or not.
+  void join_disagreeing() {
+    for (std::uint32_t h = 0; h < 3 * triangles_; ++h) {
+      const std::uint32_t o = topology_.opposite[h];
+      if (o >= h || !misoriented(h, o)) continue;
+      const auto [a, a_turned] = root_of(h / 3);
+      const auto [b, b_turned] = root_of(o / 3);
+      if (a == b) continue;
+      lower_[std::max(a, b)] = std::min(a, b);
+      turned_[std::max(a, b)] = a_turned ^ b_turned ^ 1;
+    }
+  }
+
+  struct Root {
+    std::uint32_t triangle;
+    std::uint8_t turned;  // whether the triangle asked for is turned against it
+  };
+
+  Root root_of(std::uint32_t t) {
+    std::uint8_t turned = 0;
+    while (lower_[t] != t) {
+      turned_[t] ^= turned_[lower_[t]];
+      lower_[t] = lower_[lower_[t]];
+      turned ^= turned_[t];
+      t = lower_[t];
+    }
+    return {t, turned};
+  }
+
+  // Replaces what triangles point to by the numbers of their pieces, in the order of their first
+  // triangles. These are what turned_ then refers to.
+  void number() {
+    for (std::uint32_t t = 0; t < triangles_; ++t) {
+      const std::uint32_t to = lower_[t];
+      if (topology_.degenerate(t)) {
+        lower_[t] = kNoIndex;
+      } else if (to == t) {
+        lower_[t] = topology_.component_count++;
+      } else {
+        lower_[t] = lower_[to];
+        if (!turned_.empty()) turned_[t] ^= turned_[to];
       }
     }
-    const std::uint8_t reference = turned > kept ? 1 : 0;
-    if (turned > 0) {
-      for (const std::uint32_t t : queue_) {
-        if (turned_[t] != reference) topology_.flags[t] |= Topology::kFlipped;
-      }
+  }
+
+  void choose_orientations() {
+    std::vector<double> kept(topology_.component_count, 0), turned = kept;
+    for (std::uint32_t t = 0; t < triangles_; ++t) {
+      if (!topology_.degenerate(t)) (turned_[t] ? turned : kept)[lower_[t]] += topology_.areas[t];
     }
-    ++topology_.component_count;
+    for (std::uint32_t t = 0; t < triangles_; ++t) {
+      if (topology_.degenerate(t)) continue;
+      const bool other_way = turned[lower_[t]] > kept[lower_[t]];
+      if ((turned_[t] != 0) != other_way) topology_.flags[t] |= Topology::kFlipped;
+    }
   }
 
   void cut_conflicts() {
@@ -224,8 +253,10 @@ class Pieces {
   }
 
   Topology& topology_;
-  std::vector<std::uint8_t> turned_;
-  std::vector<std::uint32_t> queue_;
+  std::uint32_t triangles_;
+  // One per triangle: a lower one of its piece, or itself; at the end its piece.
+  std::vector<std::uint32_t>& lower_;
+  std::vector<std::uint8_t> turned_;  // one per triangle; empty if all agree
 };
 
 // Counts the vertices around which triangles form more than one fan. There, one fan has fewer than

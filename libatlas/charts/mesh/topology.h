@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "libatlas/charts/charts.h"
+#include "libatlas/charts/mesh/uv_aspects.h"
 #include "libatlas/core/context.h"
 #include "libatlas/core/half_edge.h"
 #include "libatlas/core/status.h"
@@ -73,12 +74,15 @@ inline double edge_length(const Topology& topology, std::uint32_t half_edge) {
 // MeshView::seams.
 struct TopologyOptions {
   bool cut_at_materials = true;  // where MeshView::materials differ
-  bool cut_at_uv_seams = false;  // where the corners' texcoords differ
+  // Where the corners' texcoords differ, or the aspects of their pages.
+  bool cut_at_uv_seams = false;
+  UvAspects uv_aspects = {};  // for cut_at_uv_seams
 };
 
 // Builds the working copy of a mesh, in time linear in the number of triangles. Edges of more than
 // two triangles are linked in the pairs that continue each other best (see FanPairing), and
-// otherwise left open. An edge that no orientation satisfies (as on a Möbius strip) is cut.
+// otherwise left open. Triangles that agree with each other are turned together or not at all, and
+// an edge that no orientation satisfies then (as on a Möbius strip) is cut.
 // Duplicate triangles (with the same three vertices) are linked to their original only where the
 // two are turned against each other and nothing else continues them. Errors: bad_input for an index
 // out of range, a position that is not finite, no triangle, or wrong materials or densities;

@@ -70,6 +70,24 @@ TEST_F(AtlasPack, MeshUvsOfAPageThatIsNotSquare) {
   EXPECT_NE(read("again.obj").find("# page_0: 100 x 25 texels"), std::string::npos);
 }
 
+TEST_F(AtlasPack, ATextureCoordinateFarFromTheOthersIsNamed) {
+  const std::string mesh =
+      "# a plate\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvt 0 0\nvt 1 0\n  vt {} 0.5\nvt 0 1\n"
+      "f 1/1 2/2 3/3\nf 1/1 3/3 4/4\n";
+  write("far.obj", fmt::format(fmt::runtime(mesh), "1e30"));
+  const RunResult r = run("mesh far.obj -o out.obj");
+  EXPECT_EQ(r.exit_code, 1) << r.output;
+  EXPECT_NE(r.output.find("far.obj: line 8: vt 3, (1e+30, 0.5) is a texture coordinate so far"),
+            std::string::npos)
+      << r.output;
+  EXPECT_FALSE(fs::exists(dir_ / "out.obj"));
+  // The page's shape changes the coordinates in memory, but not those in the message.
+  EXPECT_NE(run("mesh far.obj --uv-aspect 4 -o out.obj").output.find("vt 3, (1e+30, 0.5) is"),
+            std::string::npos);
+  write("near.obj", fmt::format(fmt::runtime(mesh), "1.5"));
+  EXPECT_EQ(run("mesh near.obj -o out.obj").exit_code, 0);
+}
+
 // Positions are floats, so the written numbers are no longer than those read. -0 becomes 0.
 TEST_F(AtlasPack, MeshPositionsAreWrittenAsRead) {
   write("m.obj", "v 0.05 -0 0\nv 1.1 0 0\nv 0.05 0.3 0\nvt 0 0\nvt 1 0\nvt 0 1\nf 1/1 2/2 3/3\n");
