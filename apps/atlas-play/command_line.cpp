@@ -58,10 +58,12 @@ void add_picture_options(CLI::App& app, CommandLine& l) {
   app.add_option("--fov", l.fov, "vertical field of view, degrees")
       ->check(within(1, 170))
       ->capture_default_str();
-  app.add_option("--shading", l.render.shading, "unlit, lambert, blinn-phong or ward")
+  app.add_option("--shading", l.render.shading,
+                 "unlit, lambert, blinn-phong or ward (default: unlit for scenes whose textures all "
+                 "hold light, unless --sun, --light, --shadows or --visibility is given; else "
+                 "lambert)")
       ->transform(choices(shadings()))
-      ->type_name("NAME")
-      ->default_str("lambert");
+      ->type_name("NAME");
   app.add_option("--ambient", l.render.ambient, "light that no shadow darkens")
       ->capture_default_str()
       ->check(not_negative());
@@ -314,6 +316,8 @@ Parsed parse_command_line(int argc, char** argv) {
     parsed.exit_code = 2;
     return parsed;
   }
+  for (const char* option : {"--shading", "--sun", "--light", "--shadows", "--visibility"})
+    l.sun_asked |= app.count(option) > 0;
   if (app.count("--up") == 0 && world_is_z_up(l.scene)) light.up = Axis::z;
   if (l.in_window() && app.count("--width") == 0) l.render.width = kWindowWidth;
   if (l.in_window() && app.count("--height") == 0) l.render.height = kWindowHeight;

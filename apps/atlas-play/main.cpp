@@ -82,6 +82,9 @@ Status play(CommandLine& line, Terminal& terminal, const Context& context) {
   Result<ViewScene> scene = load_view(line.scene, baked, context);
   if (!scene.ok()) return scene.status();
   scene->metres_per_unit = line.unit;
+  // A world is already lit, and its reflectance is not known, so a sun would paint it white.
+  const bool without_sun = scene->textures_hold_light && !line.sun_asked;
+  if (without_sun) line.render.shading = Shading::unlit;
   Result<Camera> camera = camera_of(line, *scene);
   if (!camera.ok()) return camera.status();
   line.play.camera = *camera;
@@ -105,6 +108,8 @@ Status play(CommandLine& line, Terminal& terminal, const Context& context) {
   terminal.line(fmt::format("{} triangles, OpenGL {} on {}", scene->triangle_count(),
                             gl->info().version, gl->info().renderer));
   for (const std::string& text : renderer->plan()) terminal.line(text);
+  if (without_sun && line.bench.empty())
+    terminal.line("no sun: the textures hold the light already (--shading lambert adds one)");
   if (line.plan) return {};
   if (!line.bench.empty()) {
     Result<BenchResult> measured = measure(line, *gl, *renderer, context);
