@@ -59,9 +59,9 @@ void add_picture_options(CLI::App& app, CommandLine& l) {
       ->check(within(1, 170))
       ->capture_default_str();
   app.add_option("--shading", l.render.shading,
-                 "unlit, lambert, blinn-phong or ward (default: unlit for scenes whose textures all "
-                 "hold light, unless --sun, --light, --shadows or --visibility is given; else "
-                 "lambert)")
+                 "unlit, lambert, blinn-phong or ward (default: unlit for worlds and others all of "
+                 "whose materials are unlit, unless --sun, --light, --shadows or --visibility is "
+                 "given; else lambert)")
       ->transform(choices(shadings()))
       ->type_name("NAME");
   app.add_option("--ambient", l.render.ambient, "light that no shadow darkens")
@@ -88,7 +88,7 @@ void add_picture_options(CLI::App& app, CommandLine& l) {
   app.add_flag("--visibility", l.render.show_visibility, "show the light's visibility as grey");
   app.add_flag_callback(
          "--baked-textures", [&l] { l.baked_textures = true; },
-         "the textures hold light (default: for .wrl and for unlit glTF)")
+         "the textures hold light (default: those of unlit materials, as worlds have)")
       ->excludes(app.add_flag_callback(
           "--no-baked-textures", [&l] { l.baked_textures = false; }, "they hold colours"));
 }

@@ -78,12 +78,11 @@ Status play(CommandLine& line, Terminal& terminal, const Context& context) {
       line.key_degrees.value_or(headless ? kMaxKeyDegrees : kWindowKeyDegrees);
   if (Status s = check_outputs(line); !s.ok()) return s;
   // The scene is loaded first, so that a wrong file name does not open a window.
-  const bool baked = line.baked_textures.value_or(textures_hold_light(line.scene));
-  Result<ViewScene> scene = load_view(line.scene, baked, context);
+  Result<ViewScene> scene = load_view(line.scene, line.baked_textures, context);
   if (!scene.ok()) return scene.status();
   scene->metres_per_unit = line.unit;
   // A world is already lit, and its reflectance is not known, so a sun would paint it white.
-  const bool without_sun = scene->textures_hold_light && !line.sun_asked;
+  const bool without_sun = scene->unlit == Unlit::all && !line.sun_asked;
   if (without_sun) line.render.shading = Shading::unlit;
   Result<Camera> camera = camera_of(line, *scene);
   if (!camera.ok()) return camera.status();
@@ -109,7 +108,9 @@ Status play(CommandLine& line, Terminal& terminal, const Context& context) {
                             gl->info().version, gl->info().renderer));
   for (const std::string& text : renderer->plan()) terminal.line(text);
   if (without_sun && line.bench.empty())
-    terminal.line("no sun: the textures hold the light already (--shading lambert adds one)");
+    terminal.line(
+        "no sun: all materials are unlit, they hold the light already (--shading lambert adds "
+        "one)");
   if (line.plan) return {};
   if (!line.bench.empty()) {
     Result<BenchResult> measured = measure(line, *gl, *renderer, context);

@@ -173,7 +173,7 @@ void Renderer::Impl::fill_block(const Camera& world_camera, const FrameLight& li
   put(b.background, background_of(options, features));
   const glm::dvec3 l = glm::normalize(to_glm(light.direction));
   put(b.light, {l, options.intensity});
-  const double ambient = scene->baked_vertices || scene->baked_textures ? 0 : options.ambient;
+  const double ambient = scene->baked_vertices || scene->unlit == Unlit::all ? 0 : options.ambient;
   put(b.ambient, {glm::dvec3(ambient), options.exposure});
   b.inverse[3] = float(options.baked_strength * scene->light_scale);
   if (shadow) {

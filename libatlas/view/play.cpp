@@ -4,8 +4,6 @@
 #include <zlib.h>
 
 #include <algorithm>
-#include <fstream>
-#include <string_view>
 #include <vector>
 
 #include "libatlas/core/clock.h"
@@ -18,23 +16,6 @@
 
 namespace atlas {
 namespace fs = std::filesystem;
-
-bool textures_hold_light(const fs::path& path) {
-  const std::string extension = lower_extension(path);
-  if (extension == ".wrl" || extension == ".wrz") return true;
-  if (extension != ".gltf" && extension != ".glb") return false;
-  // The document's text names the extension, perhaps after megabytes of embedded data.
-  constexpr std::string_view kName = "KHR_materials_unlit";
-  std::ifstream file(path, std::ios::binary);
-  std::string text;
-  std::vector<char> block(std::size_t{1} << 22);
-  while (file.read(block.data(), std::streamsize(block.size())), file.gcount() > 0) {
-    text.append(block.data(), std::size_t(file.gcount()));
-    if (text.find(kName) != std::string::npos) return true;
-    text.erase(0, text.size() - std::min(text.size(), kName.size() - 1));
-  }
-  return false;
-}
 
 bool world_is_z_up(const fs::path& path) {
   std::error_code error;
@@ -64,7 +45,8 @@ void say_what_is_dark(const Scene& scene, const Context& context) {
 
 }  // namespace
 
-Result<ViewScene> load_view(const fs::path& path, bool baked_textures, const Context& context) {
+Result<ViewScene> load_view(const fs::path& path, std::optional<bool> baked_textures,
+                            const Context& context) {
   Result<LoadedScene> loaded = read_scene(path, {}, context);
   if (!loaded.ok()) return loaded.status();
   for (const std::string& line : loaded->defects.lines()) context.say("defect: " + line);

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 
 #include "libatlas/core/context.h"
 #include "libatlas/shadow/light_path.h"
@@ -11,18 +12,14 @@
 
 namespace atlas {
 
-// Returns whether a file's textures hold light instead of reflectance: those of VRML worlds (which
-// atlas-export writes), and of glTF whose materials are unlit. Returns false for a glTF file that
-// cannot be read.
-bool textures_hold_light(const std::filesystem::path& path);
-
 // Returns whether a file is a VRML world that says that its z axis points up. Returns false if the
 // file cannot be read.
 bool world_is_z_up(const std::filesystem::path& path);
 
 // Reads the scene at `path` and returns arrays to draw. Errors: those of the readers; bad_input if
 // nothing is drawn. Reports through the context what the readers left out or replaced.
-Result<ViewScene> load_view(const std::filesystem::path& path, bool baked_textures,
+// `baked_textures` is ViewSceneOptions::textures_hold_light.
+Result<ViewScene> load_view(const std::filesystem::path& path, std::optional<bool> baked_textures,
                             const Context& context);
 
 struct PlayOptions {

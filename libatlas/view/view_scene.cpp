@@ -111,10 +111,21 @@ Vec3f plain_emission(const Material& material) {
   return material.emission_textured ? Vec3f{} : material.emission;
 }
 
+double light_scale(const std::vector<Vec3f>& illumination) {
+  if (illumination.empty()) return 1;
+  std::vector<float> y;
+  y.reserve(illumination.size());
+  for (const Vec3f& e : illumination) y.push_back(luma(e.x, e.y, e.z));
+  const auto at = y.begin() + std::ptrdiff_t(double(y.size() - 1) * 0.99);
+  std::nth_element(y.begin(), at, y.end());
+  return *at > 0 ? 1.0 / *at : 1.0;
+}
+
 class Builder {
  public:
   Builder(const Scene& scene, const ViewSceneOptions& options)
       : scene_(scene),
+        hold_light_(options.textures_hold_light),
         welded_(weld(scene.positions)),
         corners_at_(corners_by_vertex(welded_, scene.indices)),
         faces_(face_normals(scene)),
@@ -123,15 +134,19 @@ class Builder {
     textured_ = scene.textured() && !scene.texcoord_indices.empty();
     emits_ = std::any_of(scene.materials.begin(), scene.materials.end(),
                          [](const Material& m) { return plain_emission(m) != Vec3f{}; });
-    baked_ = textured_ && options.textures_hold_light;
+    std::size_t unlit = 0;
+    for (const std::uint32_t m : scene.triangle_material) unlit += is_unlit(scene.materials[m]);
+    view_.unlit = unlit == 0                        ? Unlit::none
+                  : unlit == scene.triangle_count() ? Unlit::all
+                                                    : Unlit::some;
   }
 
   ViewScene::Look look_of(std::uint32_t triangle) const {
-    if (!textured_) return {};
     const Material& m = scene_.materials[scene_.triangle_material[triangle]];
-    const bool one_sided = baked_ && !m.double_sided;
-    if (m.texture < 0) return {.one_sided = one_sided};
-    return {m.texture, m.wrap_u, m.wrap_v, one_sided};
+    const bool unlit = is_unlit(m), one_sided = unlit && !m.double_sided;
+    if (!shows_texture(m)) return {.one_sided = one_sided};
+    const bool page = unlit && m.wrap_u == TextureWrap::clamp && m.wrap_v == TextureWrap::clamp;
+    return {m.texture, m.wrap_u, m.wrap_v, one_sided, page};
   }
 
   // Returns the triangles grouped by look, and within each look along a curve that keeps neighbours
@@ -170,10 +185,19 @@ class Builder {
     }
     for (ViewScene::Cluster& c : view_.clusters) enclose(c);
     add_casters();
+    view_.light_scale = light_scale(view_.illumination);
+    const auto full = float(1 / view_.light_scale);
+    for (const std::uint32_t v : on_pages_) view_.illumination[v] = {full, full, full};
     return std::move(view_);
   }
 
  private:
+  bool shows_texture(const Material& m) const { return textured_ && m.texture >= 0; }
+  bool is_unlit(const Material& m) const {
+    if (!hold_light_) return m.unlit;
+    return *hold_light_ && (m.unlit || shows_texture(m));
+  }
+
   std::uint32_t vertex(std::uint32_t t, int k) {
     const std::uint32_t corner = 3 * t + std::uint32_t(k), p = scene_.indices[corner];
     const glm::vec3 n = corner_normal(corners_at_[welded_[p]], faces_, t, cosine_);
@@ -188,11 +212,14 @@ class Builder {
     keys_.push_back(key);
     view_.positions.push_back(scene_.positions[p]);
     view_.normals.push_back(from_glm(n));
-    view_.colours.push_back(scene_.materials[material].diffuse);
-    if (emits_) view_.emission.push_back(plain_emission(scene_.materials[material]));
+    const Material& m = scene_.materials[material];
+    view_.colours.push_back(m.diffuse);
+    if (emits_) view_.emission.push_back(plain_emission(m));
+    if (view_.unlit == Unlit::some) view_.unlit_vertices.push_back(is_unlit(m));
     if (textured_)
       view_.texcoords.push_back(texcoord == kNone ? Vec2f{} : scene_.texcoords[texcoord]);
     if (scene_.lit()) view_.illumination.push_back(scene_.illumination[p]);
+    if (scene_.lit() && is_unlit(m) && shows_texture(m)) on_pages_.push_back(vertex);
     return vertex;
   }
 
@@ -230,25 +257,17 @@ class Builder {
   }
 
   const Scene& scene_;
+  std::optional<bool> hold_light_;  // ViewSceneOptions::textures_hold_light
   std::vector<std::uint32_t> welded_;
   Buckets corners_at_;  // of each welded vertex
   std::vector<glm::vec3> faces_;
   float cosine_;
-  bool textured_ = false, emits_ = false, baked_ = false;
+  bool textured_ = false, emits_ = false;
+  std::vector<std::uint32_t> on_pages_;  // vertices whose textures hold light, if others are lit
   ViewScene view_;
   FirstIndex first_;             // into keys_
   std::vector<CornerKey> keys_;  // of view_'s vertices
 };
-
-double light_scale(const std::vector<Vec3f>& illumination) {
-  if (illumination.empty()) return 1;
-  std::vector<float> y;
-  y.reserve(illumination.size());
-  for (const Vec3f& e : illumination) y.push_back(luma(e.x, e.y, e.z));
-  const auto at = y.begin() + std::ptrdiff_t(double(y.size() - 1) * 0.99);
-  std::nth_element(y.begin(), at, y.end());
-  return *at > 0 ? 1.0 / *at : 1.0;
-}
 
 }  // namespace
 
@@ -258,8 +277,6 @@ Result<ViewScene> make_view_scene(const Scene& scene, const ViewSceneOptions& op
   if (Status s = check_scene(scene); !s.ok()) return s;
   ViewScene view = Builder(scene, options).build(std::max(options.cluster_triangles, 1u));
   if (view.textured()) view.textures = scene.textures;
-  view.textures_hold_light = options.textures_hold_light && view.textured();
-  view.light_scale = light_scale(view.illumination);
   view.origin = scene.origin;
   view.metres_per_unit = scene.metres_per_unit;
   return view;

@@ -7,6 +7,8 @@
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
 
 #include "libatlas/exporters/world.h"
 #include "libatlas/image/image_io.h"
@@ -201,25 +203,43 @@ TEST_F(Play, TexturesHoldLightIfTheCallerSaysSo) {
     EXPECT_EQ(load_view(path_ / "a.obj", baked, {})->baked(), baked);
 }
 
-TEST_F(Play, KnowsWhichFilesHoldLight) {
-  std::ofstream(path_ / "a.gltf") << R"({"extensionsUsed":["KHR_materials_unlit"]})";
-  std::ofstream(path_ / "b.gltf") << "{}";
-  EXPECT_TRUE(textures_hold_light(path_ / "a.gltf"));
-  EXPECT_FALSE(textures_hold_light(path_ / "b.gltf"));
-  for (const int embedded : {1 << 22, (1 << 22) - 50, 9'000'000}) {
-    std::ofstream(path_ / "c.gltf") << R"({"buffers":[{"uri":")" << std::string(embedded, 'A')
-                                    << R"("}],"extensionsUsed":["KHR_materials_unlit"]})";
-    EXPECT_TRUE(textures_hold_light(path_ / "c.gltf")) << embedded;
-  }
-  EXPECT_FALSE(textures_hold_light(path_ / "absent.gltf"));
-  EXPECT_TRUE(textures_hold_light("world.wrl"));
-  EXPECT_TRUE(textures_hold_light("WORLD.WRL"));
-  EXPECT_TRUE(textures_hold_light("world.wrz"));
-  fs::copy_file(path_ / "a.gltf", path_ / "a.GLB");
-  fs::copy_file(path_ / "a.gltf", path_ / "a.obj");
-  EXPECT_TRUE(textures_hold_light(path_ / "a.GLB"));
-  EXPECT_FALSE(textures_hold_light(path_ / "a.obj"));
-  EXPECT_FALSE(textures_hold_light("scene.obj"));
+// Two triangles with a texture, in glTF whose second material only may be unlit.
+std::string two_materials(const std::string& first, const std::string& second) {
+  const std::string look = R"("pbrMetallicRoughness":{"baseColorTexture":{"index":0}})";
+  return R"({"asset":{"version":"2.0"},"extensionsUsed":["KHR_materials_unlit"],)"
+         R"("buffers":[{"uri":"t.bin","byteLength":60}],)"
+         R"("bufferViews":[{"buffer":0,"byteLength":36},{"buffer":0,"byteOffset":36,"byteLength":24}],)"
+         R"("accessors":[{"bufferView":0,"componentType":5126,"type":"VEC3","count":3,)"
+         R"("min":[0,0,0],"max":[1,1,0]},)"
+         R"({"bufferView":1,"componentType":5126,"type":"VEC2","count":3}],)"
+         R"("images":[{"uri":"t.png"}],"textures":[{"source":0}],"materials":[{)" +
+         look + first + "},{" + look + second +
+         R"(}],"meshes":[{"primitives":[)"
+         R"({"attributes":{"POSITION":0,"TEXCOORD_0":1},"material":0},)"
+         R"({"attributes":{"POSITION":0,"TEXCOORD_0":1},"material":1}]}],)"
+         R"("nodes":[{"mesh":0}],"scenes":[{"nodes":[0]}],"scene":0})";
+}
+
+// The name of the extension says nothing where no material has it.
+TEST_F(Play, MaterialsSayWhetherTheirTexturesHoldLight) {
+  ASSERT_TRUE(write_png(path_ / "t.png", Image8(2, 2, 3, 128), {}).ok());
+  const float values[15] = {0, 0, 0, 1, 0, 0, 0, 1, 0};
+  std::ofstream(path_ / "t.bin", std::ios::binary)
+      .write(reinterpret_cast<const char*>(values), sizeof values);
+  const std::string light = R"(,"extensions":{"KHR_materials_unlit":{}})";
+  const std::string other = R"(,"extras":{"note":"KHR_materials_unlit"})";
+  const auto unlit = [&](const std::string& first, const std::string& second,
+                         std::optional<bool> asked = {}) {
+    std::ofstream(path_ / "a.gltf") << two_materials(first, second);
+    const Result<ViewScene> view = load_view(path_ / "a.gltf", asked, {});
+    EXPECT_TRUE(view.ok()) << view.status().message();
+    return view->unlit;
+  };
+  EXPECT_EQ(unlit("", other), Unlit::none);
+  EXPECT_EQ(unlit("", light), Unlit::some);
+  EXPECT_EQ(unlit(light, light), Unlit::all);
+  EXPECT_EQ(unlit(light, light, false), Unlit::none);
+  EXPECT_EQ(unlit("", other, true), Unlit::all);
 }
 
 TEST_F(Play, KnowsWhichWorldsAreZUp) {

@@ -151,7 +151,48 @@ TEST_F(Plane, TexturesReflectOrShine) {
   Result<Renderer> r = Renderer::make(view, options_);
   ASSERT_TRUE(r.ok());
   ASSERT_TRUE(r->draw(camera_, still({0, 1, 0})).ok());
-  EXPECT_NEAR(*r->read_image().at(32, 32), encoded(0.2158), 1.5);
+  EXPECT_NEAR(*r->read_image().at(32, 32), encoded(0.6 * 0.2158), 1.5);
+}
+
+// KHR_materials_unlit: the colour is the factor times the texture.
+TEST_F(Plane, UnlitMaterialsShowTheirColourTimesTheirTexture) {
+  Scene plain = scene_;
+  plain.materials[0].unlit = true;
+  Scene textured = plain;
+  textured.textures.resize(1);
+  textured.textures[0].image = Image8(4, 4, 3, 128);  // 0.2158 linear
+  textured.materials[0].texture = 0;
+  textured.texcoords = {{0, 0}};
+  textured.texcoord_indices.assign(textured.indices.size(), 0);
+  // The other material of these scenes is out of view, so they are mixed.
+  const auto mixed = [](Scene s) {
+    add_quad(s, {{50, 0, 4}, {51, 0, 4}, {51, 0, 3}, {50, 0, 3}});
+    s.materials.push_back(s.materials[0]);
+    s.materials[1].unlit = false;
+    std::fill_n(s.triangle_material.rbegin(), 2, 1u);
+    if (s.textured()) s.texcoord_indices.resize(s.indices.size(), 0);
+    return s;
+  };
+  for (const Shading shading : {Shading::unlit, Shading::lambert, Shading::ward}) {
+    options_.shading = shading;
+    scene_ = mixed(plain);
+    EXPECT_NEAR(middle({0, 1, 0})[0], encoded(0.6), 1.5) << name_of(shading);
+    scene_ = mixed(textured);
+    EXPECT_NEAR(middle({0, 1, 0})[0], encoded(0.6 * 0.2158), 1.5) << name_of(shading);
+    add_box(scene_, {-1, 1, -1}, {1, 1.1f, 1});  // shades the middle, unlit likewise
+    scene_.texcoord_indices.resize(scene_.indices.size(), 0);
+    camera_.eye = {3, 0.8, 2.4};
+    EXPECT_NEAR(middle({0, 1, 0})[0], encoded(0.6 * 0.2158), 1.5) << name_of(shading);
+    camera_.eye = {1, 3, 2};
+  }
+  // Where all is unlit, a sun that is asked for falls on the colours without their textures.
+  options_.shading = Shading::lambert;
+  scene_ = textured;
+  EXPECT_NEAR(middle({0, 1, 0})[0], encoded(0.6 * (0.2158 + options_.intensity)), 1.5);
+  options_.shading = Shading::unlit;
+  EXPECT_NEAR(middle({0, 1, 0})[1], encoded(0.4 * 0.2158), 1.5);
+  scene_ = plain;
+  EXPECT_NEAR(middle({0, 1, 0})[1], encoded(0.4), 1.5);
 }
 
 TEST_F(Plane, TexturesGoOnBeyondTheirEdgesAsMaterialsSay) {
@@ -206,6 +247,7 @@ TEST_F(Plane, ChartsOfAPageDoNotMixFarAway) {
 // Dark values matter most: there a power of 1 / 2.2 differs most from sRGB.
 TEST_F(Plane, BakedPagesAreShownAsTheyAreStored) {
   scene_.materials[0].texture = 0;
+  scene_.materials[0].diffuse = {1, 1, 1};
   scene_.texcoords = {{0, 0}};
   scene_.texcoord_indices.assign(scene_.indices.size(), 0);
   test_context();
