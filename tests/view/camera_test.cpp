@@ -83,7 +83,7 @@ TEST(Camera, PlanesEncloseTheBoxAndLittleMore) {
     Camera camera;
     camera.eye = {1, inside, -1};
     fit_planes(camera, box);
-    EXPECT_NEAR(camera.near_plane / camera.far_plane, 1e-4, 1e-9);
+    EXPECT_NEAR(camera.near_plane / camera.far_plane, 1e-6, 1e-11);
   }
 }
 

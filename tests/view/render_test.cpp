@@ -107,6 +107,33 @@ TEST(Render, SixHundredFramesOfEverythingWithoutAnError) {
   EXPECT_EQ(gl.debug_errors(), 0) << gl.first_debug_error();
 }
 
+// A visitor stands near the corner of 20 km of ground, two metres before a pillar.
+TEST(Render, NearThingsAreSeenOnBigGround) {
+  Scene s;
+  const float g = 10000;
+  add_quad(s, {{-g, 0, g}, {g, 0, g}, {g, 0, -g}, {-g, 0, -g}});
+  add_box(s, {9899.9f, 0, 9897.9f}, {9900.1f, 3, 9898.1f});
+  s.materials.push_back({"pillar", {1, 0, 0}});
+  std::fill(s.triangle_material.begin() + 2, s.triangle_material.end(), 1u);
+  Camera camera;
+  camera.eye = {9902, 1.6, 9899.8};
+  camera.target = {9900, 1.4, 9898};
+  RenderOptions o = small();
+  o.background = {0, 0, 1};
+  for (const Shading shading : {Shading::unlit, Shading::lambert}) {
+    o.shading = shading;
+    Renderer r = must_render(s, o);
+    fit_planes(camera, r.bounds());
+    ASSERT_TRUE(r.draw(camera, still({1, 1, 0.9})).ok());
+    const Image8 image = r.read_image();
+    const std::uint8_t* pillar = image.at(image.width / 2, image.height / 2);
+    EXPECT_GT(pillar[0], 100);
+    EXPECT_EQ(pillar[1], 0) << "the ground behind the pillar";
+    for (int x = 0; x < image.width; ++x)
+      EXPECT_GT(*image.at(x, 0), 100) << "the ground at the feet, " << x;
+  }
+}
+
 // What a pass has not finished writing must not be read by the next one.
 TEST(Render, FramesOfOneViewAreTheSame) {
   const View view = courtyard_view();
