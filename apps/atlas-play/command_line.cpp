@@ -120,7 +120,9 @@ void add_shadow_options(CLI::App& app, CommandLine& l) {
       ->check(not_negative());
   CLI::Option* fit =
       app.add_flag("--fit-view", l.render.fit_view, "fit maps to the view, not the whole scene");
-  app.add_option("--view-distance", l.render.view_distance, "how far shadows reach with --fit-view")
+  app.add_option("--view-distance", l.render.view_distance,
+                 "how far from the camera shadows reach with --fit-view, in scene units (default: "
+                 "beyond nine tenths of the vertices)")
       ->needs(fit)
       ->check(not_negative());
   add_off_flag(app, "--no-snap", l.render.snap, "do not snap maps to whole texels");

@@ -69,6 +69,20 @@ Status check_outputs(const CommandLine& line) {
   return {};
 }
 
+// Tells how long a texel of the first maps is: shadows of thinner things are lost.
+Status tell_reach(const CommandLine& line, const Renderer& renderer, Terminal& terminal) {
+  const Result<MapReach> reach = renderer.map_reach(line.play.camera, line.play.light.direction(0));
+  if (!reach.ok()) return reach.status();
+  if (reach->texel <= 0) return {};
+  const std::string far =
+      reach->distance > 0
+          ? fmt::format("{:.3g} units from the camera (--view-distance)", reach->distance)
+          : std::string("everywhere");
+  terminal.line(
+      fmt::format("shadows reach {}; a map's texel is {:.3g} units long", far, reach->texel));
+  return {};
+}
+
 Status play(CommandLine& line, Terminal& terminal, const Context& context) {
   const bool headless = !line.in_window();
   // The march method works well with keys up to this far apart; a slow machine would otherwise
@@ -107,6 +121,7 @@ Status play(CommandLine& line, Terminal& terminal, const Context& context) {
   terminal.line(fmt::format("{} triangles, OpenGL {} on {}", scene->triangle_count(),
                             gl->info().version, gl->info().renderer));
   for (const std::string& text : renderer->plan()) terminal.line(text);
+  if (Status s = tell_reach(line, *renderer, terminal); !s.ok()) return s;
   if (without_sun && line.bench.empty())
     terminal.line(
         "no sun: all materials are unlit, they hold the light already (--shading lambert adds "

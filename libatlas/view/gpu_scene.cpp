@@ -119,6 +119,7 @@ Status upload_textures(const ViewScene& scene, GpuScene& gpu) {
 Result<GpuScene> upload(const ViewScene& scene) {
   GpuScene gpu;
   gpu.bounds = scene.bounds;
+  gpu.middle = scene.middle;
   const glm::dvec3 origin = (to_glm(scene.bounds.low) + to_glm(scene.bounds.high)) * 0.5;
   gpu.origin = from_glm(origin);
   gpu.positions = buffer_of(moved(scene.positions, origin));

@@ -24,7 +24,7 @@ struct GpuScene {
     return samplers[std::size_t(look.wrap_u)][std::size_t(look.wrap_v)];
   }
   std::uint32_t triangles = 0;
-  Box3 bounds;  // in the scene's own coordinates, like the clusters' spheres
+  Box3 bounds, middle;  // in the scene's own coordinates, like the clusters' spheres
   // The box's centre, to which uploaded positions are relative, since floats are finest near zero.
   Vec3d origin;
   bool textured = false, baked_vertices = false, emits = false;

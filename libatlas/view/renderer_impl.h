@@ -56,6 +56,8 @@ struct Renderer::Impl {
   Result<FrameStats> draw(const Camera& camera, const FrameLight& light);
   Status draw_shadow_maps(const Camera& camera, const FramePlan& plan, FrameStats& stats);
   Result<LightFit> fit(const Camera& camera, const Vec3d& direction) const;
+  // Returns how far from the camera shadows reach with fit_view, see RenderOptions::view_distance.
+  double reach(const Camera& camera) const;
   bool view_left_the_keys(const Camera& camera) const;
   void draw_lit(const Camera& camera, const FrameLight& light, const FramePlan& plan,
                 FrameStats& stats);

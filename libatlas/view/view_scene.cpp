@@ -121,6 +121,24 @@ double light_scale(const std::vector<Vec3f>& illumination) {
   return *at > 0 ? 1.0 / *at : 1.0;
 }
 
+// Returns the box of positions without the outermost 5 % at each end of each axis: the part of a
+// scene that has detail, without the ground or sky around it.
+Box3 middle_of(const std::vector<Vec3f>& positions) {
+  glm::dvec3 low(0), high(0);
+  std::vector<float> values(positions.size());
+  for (int axis = 0; axis < 3 && !values.empty(); ++axis) {
+    for (std::size_t i = 0; i < values.size(); ++i) values[i] = to_glm(positions[i])[axis];
+    const auto at = [&](double fraction) {
+      const auto n = std::ptrdiff_t(std::lround(double(values.size() - 1) * fraction));
+      std::nth_element(values.begin(), values.begin() + n, values.end());
+      return double(values[std::size_t(n)]);
+    };
+    low[axis] = at(0.05);
+    high[axis] = at(0.95);
+  }
+  return {from_glm(low), from_glm(high)};
+}
+
 class Builder {
  public:
   Builder(const Scene& scene, const ViewSceneOptions& options)
@@ -254,6 +272,7 @@ class Builder {
       view_.caster_indices.push_back(renumbered[w]);
     }
     view_.bounds = {from_glm(low), from_glm(high)};
+    view_.middle = middle_of(view_.caster_positions);
   }
 
   const Scene& scene_;

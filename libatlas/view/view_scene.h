@@ -54,8 +54,9 @@ struct ViewScene {
 
   std::vector<Texture> textures = {};
   Unlit unlit = Unlit::none;
-  Box3 bounds = {};            // of the positions that triangles use
-  Vec3d origin = {};           // added to a position, gives the coordinates of the file
+  Box3 bounds = {};   // of the positions that triangles use
+  Box3 middle = {};   // of these without the 5 % that lie outermost at each end of each axis
+  Vec3d origin = {};  // added to a position, gives the coordinates of the file
   double metres_per_unit = 1;  // > 0; used for the height of a visitor's eye
   double light_scale = 1;      // exposure that puts the 99th percentile of the light at 1
 
