@@ -61,11 +61,15 @@ Result<GlTexture> texture_of(const Texture& texture) {
                   fmt::format("{}: a texture of {} x {} texels; the driver takes 1 to {}",
                               texture.path.string(), image.width, image.height, largest)};
   const int n = image.channels;
-  // Grey is expanded to three channels, since sRGB formats exist for three and four only.
+  // Grey is expanded to three channels, since sRGB formats exist for three and four only. The last
+  // one of an even number is alpha.
   std::vector<std::uint8_t> rgba(std::size_t(image.width) * image.height * 4);
   for (std::size_t i = 0; i < rgba.size() / 4; ++i)
     for (int c = 0; c < 4; ++c)
-      rgba[i * 4 + c] = c == 3 ? 255 : image.texels[i * n + (n >= 3 ? c : 0)];
+      rgba[i * 4 + c] = c == 3 && n % 2 == 1 ? 255
+                                             : image.texels[i * n + (c == 3   ? n - 1
+                                                                     : n >= 3 ? c
+                                                                              : 0)];
   const int levels = std::bit_width(unsigned(std::max(image.width, image.height)));
   GlTexture t = make_texture(GL_SRGB8_ALPHA8, image.width, image.height, levels);
   glTextureSubImage2D(t.get(), 0, 0, 0, image.width, image.height, GL_RGBA, GL_UNSIGNED_BYTE,
@@ -116,6 +120,14 @@ Status upload_textures(const ViewScene& scene, GpuScene& gpu) {
 
 }  // namespace
 
+void GpuScene::bind_texture(const ViewScene::Look& look) const {
+  const GlTexture& texture = look.texture < 0 ? blank : textures[std::size_t(look.texture)];
+  const GlSampler& sampler =
+      look.page ? page_sampler : samplers[std::size_t(look.wrap_u)][std::size_t(look.wrap_v)];
+  glBindTextureUnit(0, texture.get());
+  glBindSampler(0, sampler.get());
+}
+
 Result<GpuScene> upload(const ViewScene& scene) {
   GpuScene gpu;
   gpu.bounds = scene.bounds;
@@ -152,7 +164,12 @@ Result<GpuScene> upload(const ViewScene& scene) {
   glVertexArrayElementBuffer(gpu.casters.get(), gpu.caster_indices.get());
 
   gpu.clusters = scene.clusters;
-  gpu.triangles = std::uint32_t(scene.triangle_count());
+  gpu.casters_alone = std::uint32_t(scene.caster_indices.size() / 3);
+  for (const ViewScene::Cluster& c : scene.clusters) {
+    if (c.look.cutoff <= 0) continue;
+    gpu.with_holes.push_back(c);
+    gpu.holed_triangles += c.count / 3;
+  }
   gpu.unlit = scene.unlit;
   gpu.light_scale = scene.light_scale;
   if (Status s = check_gl("uploading the scene"); !s.ok()) return s;

@@ -19,11 +19,12 @@ struct GpuScene {
   // The samplers of textures, by wrap_u, then by wrap_v, and that of atlas pages.
   std::array<std::array<GlSampler, 3>, 3> samplers;
   GlSampler page_sampler;
-  const GlSampler& sampler(const ViewScene::Look& look) const {
-    if (look.page) return page_sampler;
-    return samplers[std::size_t(look.wrap_u)][std::size_t(look.wrap_v)];
-  }
-  std::uint32_t triangles = 0;
+  // Binds the look's texture and sampler to unit 0. Only for textured scenes.
+  void bind_texture(const ViewScene::Look& look) const;
+  std::uint32_t casters_alone = 0;  // triangles of `casters`
+  // Clusters with holes cast shadows, too, in this order after those; and how many triangles.
+  std::vector<ViewScene::Cluster> with_holes;
+  std::uint32_t holed_triangles = 0;
   Box3 bounds, middle;  // in the scene's own coordinates, like the clusters' spheres
   // The box's centre, to which uploaded positions are relative, since floats are finest near zero.
   Vec3d origin;

@@ -43,6 +43,24 @@ void say_what_is_dark(const Scene& scene, const Context& context) {
                   screens.text(), screens.count == 1 ? "emits" : "emit"));
 }
 
+// Returns whether something should be seen through the material, other than through holes.
+bool is_transparent(const Material& m, const Scene& scene) {
+  const bool alpha =
+      m.texture >= 0 && scene.textures[std::size_t(m.texture)].image.channels % 2 == 0;
+  return m.opacity_textured || m.opacity_by_view ||
+         (m.alpha_mode == AlphaMode::blend && (m.opacity < 1 || alpha));
+}
+
+void say_what_is_opaque(const Scene& scene, const Context& context) {
+  NamedMaterials panes;
+  for (const Material& m : scene.materials)
+    if (is_transparent(m, scene)) panes.add(m);
+  if (panes.count == 0) return;
+  context.say(fmt::format(
+      "{} {} transparent: shown opaque (where the opacity is below 0.5, without a shadow)",
+      panes.text(), panes.count == 1 ? "is" : "are"));
+}
+
 }  // namespace
 
 Result<ViewScene> load_view(const fs::path& path, std::optional<bool> baked_textures,
@@ -51,6 +69,7 @@ Result<ViewScene> load_view(const fs::path& path, std::optional<bool> baked_text
   if (!loaded.ok()) return loaded.status();
   for (const std::string& line : loaded->defects.lines()) context.say("defect: " + line);
   say_what_is_dark(loaded->scene, context);
+  say_what_is_opaque(loaded->scene, context);
   ViewSceneOptions options;
   options.textures_hold_light = baked_textures;
   Result<ViewScene> view = make_view_scene(loaded->scene, options);

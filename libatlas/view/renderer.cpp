@@ -172,7 +172,15 @@ Status Renderer::Impl::compile(const ShaderFeatures& wanted) {
   const ShaderText text = shader_text(wanted);
   Result<GlProgram> made = link_program("of the scene", text.vertex, text.fragment);
   if (!made.ok()) return made.status();
-  GlProgram second;
+  GlProgram second, with_holes;
+  if (!scene->with_holes.empty()) {
+    ShaderFeatures f = wanted;
+    f.holes = true;
+    const ShaderText holes = shader_text(f);
+    Result<GlProgram> other = link_program("of the scene's holes", holes.vertex, holes.fragment);
+    if (!other.ok()) return other.status();
+    with_holes = std::move(other.value());
+  }
   if (!text.lighting_fragment.empty()) {
     Result<GlProgram> light =
         link_program("of the light", text.lighting_vertex, text.lighting_fragment);
@@ -180,6 +188,7 @@ Status Renderer::Impl::compile(const ShaderFeatures& wanted) {
     second = std::move(light.value());
   }
   program = std::move(made.value());
+  holed = std::move(with_holes);
   lighting = std::move(second);
   features = wanted;
   return {};
@@ -198,7 +207,8 @@ Status Renderer::Impl::apply(const RenderOptions& wanted) {
     shadow.reset();
     shadow_maps = 0;
     if (maps) {
-      Result<ShadowPass> made = ShadowPass::make(wanted.map_resolution, maps, wanted.map_bits);
+      Result<ShadowPass> made = ShadowPass::make(wanted.map_resolution, maps, wanted.map_bits,
+                                                 !scene->with_holes.empty());
       if (!made.ok()) return made.status();
       shadow = std::move(made.value());
       shadow_maps = maps;

@@ -16,7 +16,8 @@ struct Renderer::Impl {
   std::shared_ptr<const GpuScene> scene;
   RenderOptions options;
   ShaderFeatures features;
-  GlProgram program, lighting;  // lighting: none if the scene is unlit
+  // holed: for clusters with holes, none without them; lighting: none if the scene is unlit
+  GlProgram program, holed, lighting;
   GlBuffer frame_block;
   GlFramebuffer target;
   GlRenderbuffer colour;

@@ -95,6 +95,10 @@ bool coloured(const ShaderFeatures& f) {
   return !f.visibility;
 }
 
+bool samples_texture(const ShaderFeatures& f) {
+  return (coloured(f) && f.textured) || f.holes;
+}
+
 std::string vertex_text(const ShaderFeatures& f) {
   std::string s = "#version 450 core\n";
   s += kFrameBlock;
@@ -107,7 +111,7 @@ std::string vertex_text(const ShaderFeatures& f) {
   };
   if (lit(f)) pass(1, "vec3", "normal");
   if (coloured(f)) pass(2, f.some_unlit ? "vec4" : "vec3", "colour");
-  if (coloured(f) && f.textured) pass(3, "vec2", "texcoord");
+  if (samples_texture(f)) pass(3, "vec2", "texcoord");
   if (coloured(f) && f.baked_vertices) pass(4, "vec3", "illumination");
   if (coloured(f) && f.emission) pass(5, "vec3", "emission");
   return s + "void main() {\n" + body + "}\n";
@@ -152,7 +156,7 @@ std::string fragment_text(const ShaderFeatures& f) {
   if (lit(f)) s += "layout(location = 1) in vec3 v_normal;\n";
   if (coloured(f))
     s += fmt::format("layout(location = 2) in {} v_colour;\n", f.some_unlit ? "vec4" : "vec3");
-  if (coloured(f) && f.textured)
+  if (samples_texture(f))
     s += "layout(location = 3) in vec2 v_texcoord;\nlayout(binding = 0) uniform sampler2D "
          "diffuse;\n";
   if (coloured(f) && f.baked_vertices) s += "layout(location = 4) in vec3 v_illumination;\n";
@@ -161,7 +165,9 @@ std::string fragment_text(const ShaderFeatures& f) {
               : "layout(location = 0) out vec4 result;\n";
   if (lit(f)) s += kWriteSurface;
   if (!lit(f) && coloured(f)) s += kEncode;
+  if (f.holes) s += "layout(location = 0) uniform float cutoff;\n";
   s += "void main() {\n";
+  if (f.holes) s += "  if (texture(diffuse, v_texcoord).a < cutoff) discard;\n";
   if (coloured(f)) s += colours_text(f);
   if (lit(f)) {
     s += coloured(f) ? "  result = surface_of(v_normal, reflectance, own);\n"

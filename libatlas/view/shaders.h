@@ -33,6 +33,7 @@ struct ShaderFeatures {
   // surfaces that reflect what their colours do without the textures.
   bool some_unlit = false, all_unlit = false;
   bool emission = false;    // materials that emit light
+  bool holes = false;       // where a texture's alpha is below the uniform at location 0
   int pcf = 3;              // 0: nearest texel; 1: bilinear; 3, 5: that many bilinear taps per side
   bool visibility = false;  // write the light's visibility instead of a colour
   bool operator==(const ShaderFeatures&) const = default;

@@ -4,7 +4,6 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <numeric>
 #include <span>
 #include <tuple>
 
@@ -160,11 +159,11 @@ class Builder {
   }
 
   ViewScene::Look look_of(std::uint32_t triangle) const {
-    const Material& m = scene_.materials[scene_.triangle_material[triangle]];
+    const Material& m = material_of(triangle);
     const bool unlit = is_unlit(m), one_sided = unlit && !m.double_sided;
     if (!shows_texture(m)) return {.one_sided = one_sided};
     const bool page = unlit && m.wrap_u == TextureWrap::clamp && m.wrap_v == TextureWrap::clamp;
-    return {m.texture, m.wrap_u, m.wrap_v, one_sided, page};
+    return {m.texture, m.wrap_u, m.wrap_v, one_sided, page, cutoff_of(m)};
   }
 
   // Returns the triangles grouped by look, and within each look along a curve that keeps neighbours
@@ -177,8 +176,9 @@ class Builder {
     }
     const glm::dvec3 size = high - low;
     const double scale = 1023.0 / std::max({size.x, size.y, size.z, 1e-300});
-    std::vector<std::uint32_t> triangles(scene_.triangle_count()), codes(triangles.size());
-    std::iota(triangles.begin(), triangles.end(), 0u);
+    std::vector<std::uint32_t> triangles, codes(scene_.triangle_count());
+    for (std::uint32_t t = 0; t < codes.size(); ++t)
+      if (!is_invisible(material_of(t))) triangles.push_back(t);
     for (std::size_t t = 0; t < codes.size(); ++t) {
       glm::dvec3 sum(0);
       for (int k = 0; k < 3; ++k) sum += to_dvec(scene_.positions[scene_.indices[3 * t + k]]);
@@ -203,6 +203,7 @@ class Builder {
     }
     for (ViewScene::Cluster& c : view_.clusters) enclose(c);
     add_casters();
+    measure();
     view_.light_scale = light_scale(view_.illumination);
     const auto full = float(1 / view_.light_scale);
     for (const std::uint32_t v : on_pages_) view_.illumination[v] = {full, full, full};
@@ -210,6 +211,27 @@ class Builder {
   }
 
  private:
+  const Material& material_of(std::uint32_t triangle) const {
+    return scene_.materials[scene_.triangle_material[triangle]];
+  }
+  // Returns whether holes of a mask depend on a texture.
+  bool has_holes(const Material& m) const {
+    return m.alpha_mode == AlphaMode::mask && shows_texture(m) &&
+           scene_.textures[std::size_t(m.texture)].image.channels % 2 == 0;
+  }
+  bool is_invisible(const Material& m) const {
+    return m.alpha_mode == AlphaMode::mask && !has_holes(m) && m.opacity < m.alpha_cutoff;
+  }
+  // A share of the texture's alpha remains, so the limit is higher; 2 is more than any alpha.
+  float cutoff_of(const Material& m) const {
+    if (!has_holes(m) || m.alpha_cutoff <= 0) return 0;
+    return m.opacity * 2 > m.alpha_cutoff ? m.alpha_cutoff / m.opacity : 2.0f;
+  }
+  // More than half of the light passes through what casts none.
+  bool casts_by_itself(const Material& m) const {
+    const bool clear = m.alpha_mode == AlphaMode::blend && m.opacity < 0.5f;
+    return !clear && !is_invisible(m) && cutoff_of(m) == 0;
+  }
   bool shows_texture(const Material& m) const { return textured_ && m.texture >= 0; }
   bool is_unlit(const Material& m) const {
     if (!hold_light_) return m.unlit;
@@ -260,19 +282,25 @@ class Builder {
 
   void add_casters() {
     std::vector<std::uint32_t> renumbered(scene_.positions.size(), kNone);
-    glm::dvec3 low(1e300), high(-1e300);
-    for (std::uint32_t i : scene_.indices) {
-      const std::uint32_t w = welded_[i];
+    for (std::size_t k = 0; k < scene_.indices.size(); ++k) {
+      if (!casts_by_itself(material_of(std::uint32_t(k / 3)))) continue;
+      const std::uint32_t w = welded_[scene_.indices[k]];
       if (renumbered[w] == kNone) {
         renumbered[w] = std::uint32_t(view_.caster_positions.size());
         view_.caster_positions.push_back(scene_.positions[w]);
-        low = glm::min(low, to_dvec(scene_.positions[w]));
-        high = glm::max(high, to_dvec(scene_.positions[w]));
       }
       view_.caster_indices.push_back(renumbered[w]);
     }
+  }
+
+  void measure() {
+    glm::dvec3 low(1e300), high(-1e300);
+    for (const Vec3f& p : view_.positions) {
+      low = glm::min(low, to_dvec(p));
+      high = glm::max(high, to_dvec(p));
+    }
     view_.bounds = {from_glm(low), from_glm(high)};
-    view_.middle = middle_of(view_.caster_positions);
+    view_.middle = middle_of(view_.positions);
   }
 
   const Scene& scene_;
@@ -295,6 +323,10 @@ Result<ViewScene> make_view_scene(const Scene& scene, const ViewSceneOptions& op
     return Status{ErrorCode::bad_input, "the scene has no triangles: there is nothing to show"};
   if (Status s = check_scene(scene); !s.ok()) return s;
   ViewScene view = Builder(scene, options).build(std::max(options.cluster_triangles, 1u));
+  if (view.indices.empty())
+    return Status{
+        ErrorCode::bad_input,
+        "all triangles are invisible (the opacity of their materials is below the cutoff)"};
   if (view.textured()) view.textures = scene.textures;
   view.origin = scene.origin;
   view.metres_per_unit = scene.metres_per_unit;

@@ -29,12 +29,14 @@ struct ViewScene {
   std::vector<std::uint32_t> indices = {};
 
   // A texture (-1: none), how it continues beyond its edges, whether triangles are left out where
-  // their back is seen, and whether the texture is an atlas page: it is unlit and clamped.
+  // their back is seen, whether the texture is an atlas page (it is unlit and clamped), and the
+  // texture's alpha below which there are holes (0: there are none).
   struct Look {
     std::int32_t texture = -1;
     TextureWrap wrap_u = TextureWrap::repeat, wrap_v = TextureWrap::repeat;
     bool one_sided = false;
     bool page = false;
+    float cutoff = 0;
     auto operator<=>(const Look&) const = default;
   };
 
@@ -48,7 +50,8 @@ struct ViewScene {
   };
   std::vector<Cluster> clusters = {};  // grouped by look
 
-  // What casts shadows: the same triangles over welded positions.
+  // What casts shadows: the same triangles over welded positions, without those that are more than
+  // half transparent, and without clusters with holes, which cast their own shadows.
   std::vector<Vec3f> caster_positions = {};
   std::vector<std::uint32_t> caster_indices = {};
 
@@ -60,7 +63,7 @@ struct ViewScene {
   double metres_per_unit = 1;  // > 0; used for the height of a visitor's eye
   double light_scale = 1;      // exposure that puts the 99th percentile of the light at 1
 
-  std::size_t triangle_count() const { return caster_indices.size() / 3; }
+  std::size_t triangle_count() const { return indices.size() / 3; }
   bool textured() const { return !texcoords.empty(); }
   bool baked() const { return !illumination.empty() || unlit == Unlit::all; }
 };
@@ -77,6 +80,7 @@ struct ViewSceneOptions {
   std::uint32_t cluster_triangles = 512;
 };
 
+// Leaves out triangles that AlphaMode::mask makes invisible. Other transparent ones are opaque.
 // Errors: bad_input if there is no triangle to draw; those of check_scene().
 Result<ViewScene> make_view_scene(const Scene& scene, const ViewSceneOptions& options);
 

@@ -183,6 +183,21 @@ TEST_F(Play, SaysWhichMaterialsStayDark) {
   EXPECT_EQ(said[0].find("2 materials ('lamp', ...) emit light by a texture"), 0u) << said[0];
 }
 
+TEST_F(Play, SaysWhatIsShownOpaque) {
+  std::ofstream(path_ / "p.obj") << "mtllib p.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl "
+                                    "pane\nf 1 2 3\nusemtl wall\nf 3 2 1\n";
+  std::vector<std::string> said;
+  Context context;
+  context.warn = [&](std::string_view line) { said.emplace_back(line); };
+  std::ofstream(path_ / "p.mtl") << "newmtl pane\nd 0.1\nnewmtl wall\nd 1\n";
+  ASSERT_TRUE(load_view(path_ / "p.obj", {}, context).ok());
+  ASSERT_EQ(said.size(), 1u);
+  EXPECT_EQ(said[0].find("1 material ('pane') is transparent: shown opaque"), 0u) << said[0];
+  std::ofstream(path_ / "p.mtl") << "newmtl pane\nd 1\nnewmtl wall\nd 1\n";
+  ASSERT_TRUE(load_view(path_ / "p.obj", {}, context).ok());
+  EXPECT_EQ(said.size(), 1u);
+}
+
 TEST_F(Play, SaysWhatTheReaderLeftOut) {
   std::ofstream(path_ / "torn.obj") << "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\nf 1 2 9\n";
   std::vector<std::string> said;

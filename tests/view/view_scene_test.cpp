@@ -246,6 +246,18 @@ TEST(ViewScene, UnlitMaterialsAreToldApart) {
   EXPECT_EQ(make_view_scene(s, colours)->unlit, Unlit::none);
 }
 
+TEST(ViewScene, WhatIsInvisibleIsNotDrawn) {
+  Scene s = room();
+  s.materials[0].alpha_mode = AlphaMode::mask;
+  s.materials[0].opacity = 0.25f;
+  EXPECT_EQ(make_view_scene(s, {}).status().code(), ErrorCode::bad_input);
+  s.materials[0].alpha_mode = AlphaMode::blend;
+  const ViewScene glass = *make_view_scene(s, {});
+  EXPECT_EQ(glass.triangle_count(), s.triangle_count());
+  EXPECT_TRUE(glass.caster_indices.empty());
+  EXPECT_EQ(glass.bounds.high, make_view_scene(room(), {})->bounds.high);
+}
+
 TEST(ViewScene, ClustersLieCloseTogetherAlongEveryAxis) {
   for (int axis = 0; axis < 3; ++axis) {
     Scene s;
