@@ -55,6 +55,12 @@ void add_picture_options(CLI::App& app, CommandLine& l) {
          },
          "length of one scene unit, for the eye's height: m, cm, mm, in, ft, km or metres")
       ->default_str("m");
+  app.add_option("--quantity", l.colours,
+                 "what the vertices carry: illuminance (reflectance still to apply), or colour "
+                 "(sRGB, as scans have; the surface's reflectance)")
+      ->transform(choices<bool>({{"illuminance", false}, {"colour", true}}))
+      ->type_name("NAME")
+      ->default_str("illuminance");
   app.add_option("--fov", l.fov, "vertical field of view, degrees")
       ->check(within(1, 170))
       ->capture_default_str();

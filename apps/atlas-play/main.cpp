@@ -69,6 +69,16 @@ Status check_outputs(const CommandLine& line) {
   return {};
 }
 
+// Names the frames that a longer recording in the same folder has left: programs that read the
+// folder as a film would append them.
+void name_old_frames(const PlayOptions& options, int recorded, Terminal& terminal) {
+  if (recorded == 0) return;
+  const auto frame = [&](std::size_t f) { return recorded_frame(options, int(f)); };
+  const auto old = files_there(std::size_t(recorded), frame);
+  if (old.empty()) return;
+  terminal.line(old_pages_text(old, "recording with more frames", "this one"));
+}
+
 // Tells how long a texel of the first maps is: shadows of thinner things are lost.
 Status tell_reach(const CommandLine& line, const Renderer& renderer, Terminal& terminal) {
   const Result<MapReach> reach = renderer.map_reach(line.play.camera, line.play.light.direction(0));
@@ -92,7 +102,10 @@ Status play(CommandLine& line, Terminal& terminal, const Context& context) {
       line.key_degrees.value_or(headless ? kMaxKeyDegrees : kWindowKeyDegrees);
   if (Status s = check_outputs(line); !s.ok()) return s;
   // The scene is loaded first, so that a wrong file name does not open a window.
-  Result<ViewScene> scene = load_view(line.scene, line.baked_textures, context);
+  ViewSceneOptions look;
+  look.textures_hold_light = line.baked_textures;
+  look.vertices_hold_colours = line.colours;
+  Result<ViewScene> scene = load_view(line.scene, look, context);
   if (!scene.ok()) return scene.status();
   scene->metres_per_unit = line.unit;
   // A world is already lit, and its reflectance is not known, so a sun would paint it white.
@@ -138,6 +151,7 @@ Status play(CommandLine& line, Terminal& terminal, const Context& context) {
   Result<PlaySummary> done = window ? play_in_window(*window, *renderer, line.play, context)
                                     : play_headless(*gl, *renderer, line.play, context);
   if (!done.ok()) return done.status();
+  name_old_frames(line.play, done->recorded, terminal);
   terminal.line(fmt::format("{} frames, median {:.2f} ms, {} shadow maps begun", done->frames,
                             done->median_seconds * 1e3, done->shadow_passes));
   return {};

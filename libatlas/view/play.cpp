@@ -63,19 +63,24 @@ void say_what_is_opaque(const Scene& scene, const Context& context) {
 
 }  // namespace
 
-Result<ViewScene> load_view(const fs::path& path, std::optional<bool> baked_textures,
+Result<ViewScene> load_view(const fs::path& path, const ViewSceneOptions& options,
                             const Context& context) {
-  Result<LoadedScene> loaded = read_scene(path, {}, context);
+  ReadOptions read;
+  read.srgb_colours = options.vertices_hold_colours;
+  Result<LoadedScene> loaded = read_scene(path, read, context);
   if (!loaded.ok()) return loaded.status();
   for (const std::string& line : loaded->defects.lines()) context.say("defect: " + line);
   say_what_is_dark(loaded->scene, context);
   say_what_is_opaque(loaded->scene, context);
-  ViewSceneOptions options;
-  options.textures_hold_light = baked_textures;
   Result<ViewScene> view = make_view_scene(loaded->scene, options);
   if (!view.ok())
     return Status{view.status().code(), path.string() + ": " + view.status().message()};
   return view;
+}
+
+fs::path recorded_frame(const PlayOptions& options, int frame) {
+  const fs::path folder = options.record.empty() ? "recording" : options.record;
+  return folder / fmt::format("frame{:05}.png", frame);
 }
 
 Result<PlaySummary> play_headless(GlContext& gl, Renderer& renderer, const PlayOptions& options,
@@ -101,8 +106,9 @@ Result<PlaySummary> play_headless(GlContext& gl, Renderer& renderer, const PlayO
     if (!stats.ok()) return stats.status();
     times.push_back(wall_seconds() - start);
     if (!options.record.empty()) {
-      const fs::path file = options.record / fmt::format("frame{:05}.png", f);
+      const fs::path file = recorded_frame(options, f);
       if (Status s = write_picture(file, renderer.read_image()); !s.ok()) return s;
+      ++summary.recorded;
     }
     context.report("frames", double(f + 1) / options.frames);
   }

@@ -3,7 +3,6 @@
 
 #include <cstdint>
 #include <filesystem>
-#include <optional>
 
 #include "libatlas/core/context.h"
 #include "libatlas/shadow/light_path.h"
@@ -17,30 +16,35 @@ namespace atlas {
 bool world_is_z_up(const std::filesystem::path& path);
 
 // Reads the scene at `path` and returns arrays to draw. Errors: those of the readers; bad_input if
-// nothing is drawn. Reports through the context what the readers left out or replaced.
-// `baked_textures` is ViewSceneOptions::textures_hold_light.
-Result<ViewScene> load_view(const std::filesystem::path& path, std::optional<bool> baked_textures,
+// nothing is drawn. Reports through the context what the readers left out or replaced, and what is
+// not shown. Colours at the vertices (ViewSceneOptions::vertices_hold_colours) are read as sRGB.
+Result<ViewScene> load_view(const std::filesystem::path& path, const ViewSceneOptions& options,
                             const Context& context);
 
 struct PlayOptions {
   LightPath light = {};
-  Camera camera = {};                 // the camera at the start
-  double degrees_per_frame = 0.5;     // headless
-  double degrees_per_second = 15;     // in a window
-  double max_step = 2;                // in a window: most degrees per frame, see LightClock
-  int frames = 1;                     // headless: how many are drawn
-  int close_after = 0;                // in a window: frames until it closes by itself; 0: never
-  std::filesystem::path record = {};  // a folder for frame00000.png and so on; empty: none
+  Camera camera = {};              // the camera at the start
+  double degrees_per_frame = 0.5;  // headless
+  double degrees_per_second = 15;  // in a window
+  double max_step = 2;             // in a window: most degrees per frame, see LightClock
+  int frames = 1;                  // headless: how many are drawn
+  int close_after = 0;             // in a window: frames until it closes by itself; 0: never
+  // A folder for frame00000.png and so on (recorded_frame()); empty: none, in a window "recording".
+  std::filesystem::path record = {};
   // PNG file; empty: none. Headless, it gets the last frame; in a window, what F12 takes, and what
   // was last shown before close_after.
   std::filesystem::path screenshot = {};
 };
+
+// Returns the name of a recording's frame, counted from 0.
+std::filesystem::path recorded_frame(const PlayOptions& options, int frame);
 
 struct PlaySummary {
   int frames = 0;
   std::int64_t shadow_passes = 0;
   std::int64_t gl_errors = 0;  // reported by the driver; counted in debug contexts
   double median_seconds = 0;   // per frame, wall-clock time
+  int recorded = 0;            // frames that were written
 };
 
 // Draws options.frames frames. Fails with the first GL error, if the context is lost

@@ -148,7 +148,9 @@ class Builder {
         faces_(face_normals(scene)),
         cosine_(float(cosine_of(options.crease_degrees))),
         first_(scene.indices.size()) {
-    textured_ = scene.textured() && !scene.texcoord_indices.empty();
+    coloured_ = options.vertices_hold_colours && scene.lit();
+    lit_ = scene.lit() && !coloured_;
+    textured_ = scene.textured() && !scene.texcoord_indices.empty() && !coloured_;
     emits_ = std::any_of(scene.materials.begin(), scene.materials.end(),
                          [](const Material& m) { return plain_emission(m) != Vec3f{}; });
     std::size_t unlit = 0;
@@ -253,13 +255,13 @@ class Builder {
     view_.positions.push_back(scene_.positions[p]);
     view_.normals.push_back(from_glm(n));
     const Material& m = scene_.materials[material];
-    view_.colours.push_back(m.diffuse);
+    view_.colours.push_back(coloured_ ? scene_.illumination[p] : m.diffuse);
     if (emits_) view_.emission.push_back(plain_emission(m));
     if (view_.unlit == Unlit::some) view_.unlit_vertices.push_back(is_unlit(m));
     if (textured_)
       view_.texcoords.push_back(texcoord == kNone ? Vec2f{} : scene_.texcoords[texcoord]);
-    if (scene_.lit()) view_.illumination.push_back(scene_.illumination[p]);
-    if (scene_.lit() && is_unlit(m) && shows_texture(m)) on_pages_.push_back(vertex);
+    if (lit_) view_.illumination.push_back(scene_.illumination[p]);
+    if (lit_ && is_unlit(m) && shows_texture(m)) on_pages_.push_back(vertex);
     return vertex;
   }
 
@@ -310,6 +312,7 @@ class Builder {
   std::vector<glm::vec3> faces_;
   float cosine_;
   bool textured_ = false, emits_ = false;
+  bool lit_ = false, coloured_ = false;  // what the vertices hold: light, or colours
   std::vector<std::uint32_t> on_pages_;  // vertices whose textures hold light, if others are lit
   ViewScene view_;
   FirstIndex first_;             // into keys_

@@ -75,6 +75,9 @@ struct ViewSceneOptions {
   // light of a surface's front: unlit materials that are not double-sided (Material::double_sided)
   // are left out from behind, and no others.
   std::optional<bool> textures_hold_light = {};
+  // The light at the vertices is the surface's colour (linear, ReadOptions::srgb_colours), as scans
+  // have it: it takes the place of all other reflectance, and textures are not shown.
+  bool vertices_hold_colours = false;
   // Triangles per cluster: few enough to follow the depth order, many enough that their draw calls
   // cost little (256 to 1024 measured alike on the software renderer).
   std::uint32_t cluster_triangles = 512;

@@ -203,6 +203,30 @@ TEST_F(AtlasPlay, TheBenchMeasuresWhatItIsAsked) {
   EXPECT_EQ(times.output.find("| march | 2 |"), std::string::npos) << times.output;
 }
 
+TEST_F(AtlasPlay, FramesOfAnEarlierRecordingAreNamed) {
+  const std::string command =
+      "roof.obj --headless --software --width 8 --height 8 --map 32 --record film --frames ";
+  EXPECT_EQ(run(command + "5").output.find("earlier"), std::string::npos);
+  const RunResult r = run(command + "2");
+  EXPECT_EQ(r.exit_code, 0) << r.errors;
+  EXPECT_NE(
+      r.output.find("film/frame00002.png to frame00004.png: of an earlier recording with more "
+                    "frames, no part of this one (may be removed)"),
+      std::string::npos)
+      << r.output;
+  EXPECT_TRUE(fs::exists(dir_ / "film" / "frame00004.png"));
+}
+
+TEST_F(AtlasPlay, TheStartTellsHowFarShadowsReach) {
+  const std::string command = "roof.obj --plan --software --map 64 ";
+  EXPECT_NE(run(command).output.find("shadows reach everywhere; a map's texel is 0."),
+            std::string::npos);
+  EXPECT_NE(run(command + "--fit-view --view-distance 2.5")
+                .output.find("shadows reach 2.5 units from the camera (--view-distance)"),
+            std::string::npos);
+  EXPECT_EQ(run(command + "--shading unlit").output.find("shadows reach"), std::string::npos);
+}
+
 // The page is dark, so a sun on it would be seen.
 TEST_F(AtlasPlay, NoSunFallsOnAWorldUnlessOneIsAskedFor) {
   std::ofstream(dir_ / "page.ppm") << "P3\n1 1\n255\n40 60 90\n";

@@ -85,6 +85,8 @@ TEST(PlayOptions, OfThePicture) {
                                       {"lambert", Shading::lambert},
                                       {"blinn-phong", Shading::blinn_phong}})
     EXPECT_EQ(good({"--shading", name}).render.shading, shading);
+  EXPECT_FALSE(good({"--quantity", "illuminance"}).colours);
+  EXPECT_TRUE(good({"--quantity", "colour"}).colours);
   EXPECT_FALSE(good({"--headless", "--up", "z"}).sun_asked);
   for (const char* option :
        {"--shading=unlit", "--sun=1", "--light=fixed:0,1,0", "--shadows=none", "--visibility"})
