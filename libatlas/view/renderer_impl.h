@@ -1,4 +1,4 @@
-// Internal: the renderer's state, shared by renderer.cpp and lit_pass.cpp.
+// Internal: the renderer's state, shared by renderer.cpp, map_reach.cpp and lit_pass.cpp.
 #pragma once
 
 #include <compare>
