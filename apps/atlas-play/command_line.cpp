@@ -55,13 +55,21 @@ void add_picture_options(CLI::App& app, CommandLine& l) {
          },
          "length of one scene unit, for the eye's height: m, cm, mm, in, ft, km or metres")
       ->default_str("m");
+  app.add_option("--quantity", l.colours,
+                 "what the vertices carry: illuminance (reflectance still to apply), or colour "
+                 "(sRGB, as scans have; the surface's reflectance)")
+      ->transform(choices<bool>({{"illuminance", false}, {"colour", true}}))
+      ->type_name("NAME")
+      ->default_str("illuminance");
   app.add_option("--fov", l.fov, "vertical field of view, degrees")
       ->check(within(1, 170))
       ->capture_default_str();
-  app.add_option("--shading", l.render.shading, "unlit, lambert, blinn-phong or ward")
+  app.add_option("--shading", l.render.shading,
+                 "unlit, lambert, blinn-phong or ward (default: unlit for worlds and others all of "
+                 "whose materials are unlit, unless --sun, --light, --shadows or --visibility is "
+                 "given; else lambert)")
       ->transform(choices(shadings()))
-      ->type_name("NAME")
-      ->default_str("lambert");
+      ->type_name("NAME");
   app.add_option("--ambient", l.render.ambient, "light that no shadow darkens")
       ->capture_default_str()
       ->check(not_negative());
@@ -86,7 +94,7 @@ void add_picture_options(CLI::App& app, CommandLine& l) {
   app.add_flag("--visibility", l.render.show_visibility, "show the light's visibility as grey");
   app.add_flag_callback(
          "--baked-textures", [&l] { l.baked_textures = true; },
-         "the textures hold light (default: for .wrl and for unlit glTF)")
+         "the textures hold light (default: those of unlit materials, as worlds have)")
       ->excludes(app.add_flag_callback(
           "--no-baked-textures", [&l] { l.baked_textures = false; }, "they hold colours"));
 }
@@ -118,7 +126,9 @@ void add_shadow_options(CLI::App& app, CommandLine& l) {
       ->check(not_negative());
   CLI::Option* fit =
       app.add_flag("--fit-view", l.render.fit_view, "fit maps to the view, not the whole scene");
-  app.add_option("--view-distance", l.render.view_distance, "how far shadows reach with --fit-view")
+  app.add_option("--view-distance", l.render.view_distance,
+                 "how far from the camera shadows reach with --fit-view, in scene units (default: "
+                 "beyond nine tenths of the vertices)")
       ->needs(fit)
       ->check(not_negative());
   add_off_flag(app, "--no-snap", l.render.snap, "do not snap maps to whole texels");
@@ -314,6 +324,8 @@ Parsed parse_command_line(int argc, char** argv) {
     parsed.exit_code = 2;
     return parsed;
   }
+  for (const char* option : {"--shading", "--sun", "--light", "--shadows", "--visibility"})
+    l.sun_asked |= app.count(option) > 0;
   if (app.count("--up") == 0 && world_is_z_up(l.scene)) light.up = Axis::z;
   if (l.in_window() && app.count("--width") == 0) l.render.width = kWindowWidth;
   if (l.in_window() && app.count("--height") == 0) l.render.height = kWindowHeight;

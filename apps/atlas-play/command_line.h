@@ -17,6 +17,8 @@ struct CommandLine {
   bool vsync = true;
   std::optional<bool> baked_textures;  // nothing: chosen by the file
   std::filesystem::path bench;         // a folder; empty: no bench
+  bool sun_asked = false;              // an option about shading or the light is given
+  bool colours = false;                // the vertices hold colours, not light
   bool no_errors = false;              // bench: times only
   double unit = 1;                     // metres per scene unit
   std::string camera;                  // "x,y,z;x,y,z"; empty: see camera_of()

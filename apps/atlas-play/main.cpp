@@ -69,6 +69,30 @@ Status check_outputs(const CommandLine& line) {
   return {};
 }
 
+// Names the frames that a longer recording in the same folder has left: programs that read the
+// folder as a film would append them.
+void name_old_frames(const PlayOptions& options, int recorded, Terminal& terminal) {
+  if (recorded == 0) return;
+  const auto frame = [&](std::size_t f) { return recorded_frame(options, int(f)); };
+  const auto old = files_there(std::size_t(recorded), frame);
+  if (old.empty()) return;
+  terminal.line(old_pages_text(old, "recording with more frames", "this one"));
+}
+
+// Tells how long a texel of the first maps is: shadows of thinner things are lost.
+Status tell_reach(const CommandLine& line, const Renderer& renderer, Terminal& terminal) {
+  const Result<MapReach> reach = renderer.map_reach(line.play.camera, line.play.light.direction(0));
+  if (!reach.ok()) return reach.status();
+  if (reach->texel <= 0) return {};
+  const std::string far =
+      reach->distance > 0
+          ? fmt::format("{:.3g} units from the camera (--view-distance)", reach->distance)
+          : std::string("everywhere");
+  terminal.line(
+      fmt::format("shadows reach {}; a map's texel is {:.3g} units long", far, reach->texel));
+  return {};
+}
+
 Status play(CommandLine& line, Terminal& terminal, const Context& context) {
   const bool headless = !line.in_window();
   // The march method works well with keys up to this far apart; a slow machine would otherwise
@@ -78,10 +102,15 @@ Status play(CommandLine& line, Terminal& terminal, const Context& context) {
       line.key_degrees.value_or(headless ? kMaxKeyDegrees : kWindowKeyDegrees);
   if (Status s = check_outputs(line); !s.ok()) return s;
   // The scene is loaded first, so that a wrong file name does not open a window.
-  const bool baked = line.baked_textures.value_or(textures_hold_light(line.scene));
-  Result<ViewScene> scene = load_view(line.scene, baked, context);
+  ViewSceneOptions look;
+  look.textures_hold_light = line.baked_textures;
+  look.vertices_hold_colours = line.colours;
+  Result<ViewScene> scene = load_view(line.scene, look, context);
   if (!scene.ok()) return scene.status();
   scene->metres_per_unit = line.unit;
+  // A world is already lit, and its reflectance is not known, so a sun would paint it white.
+  const bool without_sun = scene->unlit == Unlit::all && !line.sun_asked;
+  if (without_sun) line.render.shading = Shading::unlit;
   Result<Camera> camera = camera_of(line, *scene);
   if (!camera.ok()) return camera.status();
   line.play.camera = *camera;
@@ -105,6 +134,11 @@ Status play(CommandLine& line, Terminal& terminal, const Context& context) {
   terminal.line(fmt::format("{} triangles, OpenGL {} on {}", scene->triangle_count(),
                             gl->info().version, gl->info().renderer));
   for (const std::string& text : renderer->plan()) terminal.line(text);
+  if (Status s = tell_reach(line, *renderer, terminal); !s.ok()) return s;
+  if (without_sun && line.bench.empty())
+    terminal.line(
+        "no sun: all materials are unlit, they hold the light already (--shading lambert adds "
+        "one)");
   if (line.plan) return {};
   if (!line.bench.empty()) {
     Result<BenchResult> measured = measure(line, *gl, *renderer, context);
@@ -117,6 +151,7 @@ Status play(CommandLine& line, Terminal& terminal, const Context& context) {
   Result<PlaySummary> done = window ? play_in_window(*window, *renderer, line.play, context)
                                     : play_headless(*gl, *renderer, line.play, context);
   if (!done.ok()) return done.status();
+  name_old_frames(line.play, done->recorded, terminal);
   terminal.line(fmt::format("{} frames, median {:.2f} ms, {} shadow maps begun", done->frames,
                             done->median_seconds * 1e3, done->shadow_passes));
   return {};

@@ -200,9 +200,16 @@ Result<std::vector<std::uint8_t>> whole_file(const Source& source) {
   return bytes;
 }
 
-// Opens the file of the source's name. OpenImageIO takes what follows a '?' in a name for options
-// of its own. It then gets the open file, beside a name without '?', by which it picks a reader.
-void open_file(Source& source) {
+// Opens a file, unless it claims to be larger than it can be: OpenImageIO may run out of memory.
+// OpenImageIO takes what follows a '?' in a name for options of its own. It then gets the open
+// file, beside a name without '?', by which it picks a reader.
+Result<Source> open_file(const std::filesystem::path& path) {
+  std::error_code error;
+  Source source{nullptr, nullptr, std::filesystem::file_size(path, error), path.string()};
+  if (error) return failure(path, "cannot be read as an image", error.message());
+  if (const auto claim = claim_of(head_of(path, source.bytes))) {
+    if (Status s = check_claim(*claim, source.bytes, source.name); !s.ok()) return s;
+  }
   OIIO::ImageSpec config = input_settings();
   std::string name = source.name;
   OIIO::Filesystem::IOProxy* proxy = nullptr;
@@ -213,6 +220,8 @@ void open_file(Source& source) {
     std::replace(name.begin(), name.end(), '?', '_');
   }
   source.input = OIIO::ImageInput::open(name, &config, proxy);
+  if (!source.input) return failure(path, "cannot be read as an image", OIIO::geterror());
+  return source;
 }
 
 template <class T>
@@ -223,19 +232,14 @@ Result<Image<T>> read(const std::filesystem::path& path) {
                  : Status(ErrorCode::not_found, fmt::format("{}: no such image", path.string()));
   }
   return within_memory(path.string(), [&]() -> Result<Image<T>> {
-    Source source{nullptr, nullptr, std::filesystem::file_size(path, error), path.string()};
-    if (error) return failure(path, "cannot be read as an image", error.message());
-    if (const auto claim = claim_of(head_of(path, source.bytes))) {
-      if (Status s = check_claim(*claim, source.bytes, source.name); !s.ok()) return s;
-    }
-    open_file(source);
-    if (!source.input) return failure(path, "cannot be read as an image", OIIO::geterror());
-    Result<Image<T>> image = read_pixels<T>(source);
-    if (image.ok()) divide_by_alpha(*source.input, *image);
-    if (!image.ok() || !may_be_multiplied(*source.input)) return image;
-    const Result<std::vector<std::uint8_t>> file = whole_file(source);
+    const Result<Source> source = open_file(path);
+    if (!source.ok()) return source.status();
+    Result<Image<T>> image = read_pixels<T>(*source);
+    if (image.ok()) divide_by_alpha(*source->input, *image);
+    if (!image.ok() || !may_be_multiplied(*source->input)) return image;
+    const Result<std::vector<std::uint8_t>> file = whole_file(*source);
     if (!file.ok()) return file.status();
-    if (Status s = restore_colors<T>(*file, source, *image); !s.ok()) return s;
+    if (Status s = restore_colors<T>(*file, *source, *image); !s.ok()) return s;
     return image;
   });
 }
@@ -337,6 +341,15 @@ Result<ImageF> read_floats(const std::filesystem::path& path) {
   return read<float>(path);
 }
 
+bool has_floats(const std::filesystem::path& path) {
+  const Result<bool> floats = within_memory(path.string(), [&]() -> Result<bool> {
+    const Result<Source> source = open_file(path);
+    if (!source.ok()) return source.status();
+    return source->input->spec().format.is_floating_point();
+  });
+  return floats.ok() && *floats;
+}
+
 Status write_8_bits(const std::filesystem::path& path, const Image8& image,
                     const PngOptions& options) {
   OIIO::ImageSpec spec(image.width, image.height, image.channels, OIIO::TypeDesc::UINT8);
@@ -368,8 +381,8 @@ Status write_floats(const std::filesystem::path& path, const ImageF& image) {
   return write(path, image, spec, "openexr");
 }
 
-constexpr ImageFiles functions = {image_files_mark(), read_8_bits,  decode,
-                                  read_floats,        write_8_bits, write_floats};
+constexpr ImageFiles functions = {image_files_mark(), read_8_bits,  decode,      read_floats,
+                                  has_floats,         write_8_bits, write_floats};
 
 }  // namespace
 }  // namespace atlas

@@ -14,7 +14,7 @@
 
 namespace atlas {
 
-// The functions of image_io.h, by the same names.
+// The functions of image_io.h, by the same names, and what those need.
 struct ImageFiles {
   // The value of image_files_mark() where the module was compiled. It must stay the first member,
   // so that it can be read whatever the other members are.
@@ -22,6 +22,8 @@ struct ImageFiles {
   Result<Image8> (*read_image8)(const std::filesystem::path&);
   Result<Image8> (*decode_image8)(std::span<const std::uint8_t>, const std::string&);
   Result<ImageF> (*read_image_float)(const std::filesystem::path&);
+  // Returns whether a file holds floats; false if it cannot be read.
+  bool (*holds_floats)(const std::filesystem::path&);
   Status (*write_png)(const std::filesystem::path&, const Image8&, const PngOptions&);
   Status (*write_exr)(const std::filesystem::path&, const ImageF&);
 };
@@ -30,7 +32,7 @@ struct ImageFiles {
 // The mark differs if the sizes of those objects differ. Increase kVersion when the functions
 // change.
 constexpr std::uint64_t image_files_mark() {
-  constexpr std::uint64_t kVersion = 1;
+  constexpr std::uint64_t kVersion = 2;
   std::uint64_t mark = 0x9e3779b97f4a7c15u + kVersion;  // no function has such an address
   for (const std::uint64_t size :
        {sizeof(ImageFiles), sizeof(std::filesystem::path), sizeof(std::string), sizeof(Image8),

@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "libatlas/core/srgb.h"
 #include "libatlas/image/image_files.h"
 
 namespace atlas {
@@ -140,6 +141,29 @@ Status check_image(const fs::path& path, const Image<T>& image, int most_channel
   return {};
 }
 
+// Returns whether clipping changes a linear value by more than a step of eight bits.
+bool clips(float linear) {
+  constexpr float kStep = 1 / 255.0f;
+  return !(linear >= -kStep / 12.92f && linear <= 1 + kStep);
+}
+
+TextureImage encoded(const ImageF& linear) {
+  TextureImage texture{Image8(linear.width, linear.height, linear.channels)};
+  const int n = linear.channels, colours = n == 2 || n == 4 ? n - 1 : n;
+  for (std::size_t i = 0; i < linear.texels.size(); ++i) {
+    const float value = linear.texels[i];
+    const bool alpha = int(i % std::size_t(n)) >= colours;
+    texture.image.texels[i] = alpha ? quantize8(value) : srgb_encode8(value);
+    texture.clipped |= !alpha && clips(value);
+  }
+  return texture;
+}
+
+bool holds_floats(const fs::path& path) {
+  const Module& files = module();
+  return files.functions && files.functions->holds_floats(path);
+}
+
 }  // namespace
 
 Result<Image8> read_image8(const fs::path& path) {
@@ -152,6 +176,17 @@ Result<Image8> decode_image8(std::span<const std::uint8_t> bytes, const std::str
 
 Result<ImageF> read_image_float(const fs::path& path) {
   return call(&ImageFiles::read_image_float, path.string(), path);
+}
+
+Result<TextureImage> read_texture(const fs::path& path) {
+  if (holds_floats(path)) {
+    const Result<ImageF> linear = read_image_float(path);
+    if (!linear.ok()) return linear.status();
+    return encoded(*linear);
+  }
+  Result<Image8> image = read_image8(path);
+  if (!image.ok()) return image.status();
+  return TextureImage{std::move(*image)};
 }
 
 Status write_png(const fs::path& path, const Image8& image, const PngOptions& options) {

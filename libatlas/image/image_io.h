@@ -28,6 +28,18 @@ Result<Image8> decode_image8(std::span<const std::uint8_t> bytes, const std::str
 // The same as floats; integer values are scaled to [0, 1].
 Result<ImageF> read_image_float(const std::filesystem::path& path);
 
+// A texture for display or reflectance: colours are sRGB-encoded, the alpha of images with 2 or 4
+// channels is not.
+struct TextureImage {
+  Image8 image = {};
+  bool clipped = false;  // the file has colours beyond 0..1, or that are no numbers
+};
+
+// Reads an image as a texture. Files of integers hold sRGB-encoded colours, as read_image8() reads
+// them. Files of floats (OpenEXR, Radiance HDR, some TIFF files) hold linear colours, which are
+// encoded, and clipped to 0..1.
+Result<TextureImage> read_texture(const std::filesystem::path& path);
+
 struct PngOptions {
   int compression = 3;  // zlib level, 0 (none) to 9
   // For images such as baked pages, whose neighbouring texels are similar and in which nothing

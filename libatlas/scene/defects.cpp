@@ -47,6 +47,9 @@ constexpr Names kNames[] = {
      "colours of materials beyond 0 to 1, used as they are (write shares: 0.8, not 204)"},
     {"texture_missing", "textures not found, plain diffuse colour used"},
     {"texture_unreadable", "textures that cannot be decoded, plain diffuse colour used"},
+    {"texture_clipped",
+     "textures of linear values with some beyond 0 to 1, clipped (no surface reflects more light "
+     "than falls on it)"},
     {"texture_option_ignored", "texture options ignored"},
     {"node_hidden", "hidden nodes left out"},
     {"skin_repeated",

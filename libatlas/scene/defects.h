@@ -38,6 +38,7 @@ enum class DefectKind : std::uint8_t {
   reflectance_beyond_one,   // a component is below 0 or above 1: value kept as it is
   texture_missing,          // image not found: the material's plain diffuse colour is used
   texture_unreadable,       // image that cannot be decoded: likewise
+  texture_clipped,          // image of linear values with some beyond 0 to 1: these are clipped
   texture_option_ignored,   // a texture option that has no counterpart here
   node_hidden,              // node that its file hides: left out
   skin_repeated,            // node or instance whose joints put its mesh where another one is: kept

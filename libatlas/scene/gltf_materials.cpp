@@ -140,13 +140,14 @@ void add_emission(const tinygltf::Material& m, RawMaterial& material) {
   material.emission_textured = m.emissiveTexture.index >= 0;
 }
 
-void add_transparency(const tinygltf::Material& m, double opacity, RawMaterial& material) {
+void add_visibility(const tinygltf::Material& m, double opacity, RawMaterial& material) {
   material.opacity = float(std::clamp(opacity, 0.0, 1.0));
   material.alpha_mode = m.alphaMode == "MASK"    ? AlphaMode::mask
                         : m.alphaMode == "BLEND" ? AlphaMode::blend
                                                  : AlphaMode::opaque;
   material.alpha_cutoff = float(std::clamp(m.alphaCutoff, 0.0, 1e6));
   material.double_sided = m.doubleSided;
+  material.unlit = m.extensions.contains("KHR_materials_unlit");
 }
 
 // KHR_texture_transform may name another set of texture coordinates than its texture does.
@@ -211,7 +212,7 @@ Status add_gltf_materials(const tinygltf::Model& model, SceneBuilder& builder) {
     }
     report_shaders(m, material.name, builder);
     add_emission(m, material);
-    add_transparency(m, diffuse.opacity, material);
+    add_visibility(m, diffuse.opacity, material);
     material.texture = image_of(model, diffuse.texture.index);
     if (diffuse.texture.index >= 0 && material.texture < 0) {
       builder.defects.add(DefectKind::texture_unreadable, [&] {

@@ -167,13 +167,17 @@ void SceneBuilder::move_texcoords() {
 
 // Checks first whether the file exists, because asking the decoder for it would load a large
 // library.
-Result<Image8> SceneBuilder::load_texture(const RawTexture& raw) const {
-  if (!raw.bytes.empty()) return decode_image8(raw.bytes, raw.path.string());
+Result<TextureImage> SceneBuilder::load_texture(const RawTexture& raw) const {
+  if (!raw.bytes.empty()) {
+    Result<Image8> image = decode_image8(raw.bytes, raw.path.string());
+    if (!image.ok()) return image.status();
+    return TextureImage{std::move(*image)};
+  }
   std::error_code error;
   if (std::filesystem::status(raw.path, error).type() == std::filesystem::file_type::not_found) {
     return Status(ErrorCode::not_found, raw.path.string());
   }
-  return read_image8(raw.path);
+  return read_texture(raw.path);
 }
 
 // If the texture is a PNG or JPEG file, appends it to the scene's textures and returns true.
@@ -201,7 +205,9 @@ void SceneBuilder::load_textures(Scene& scene, bool encoded) {
     auto image = load_texture(raw);
     if (image.ok()) {
       loaded[i] = static_cast<std::int32_t>(scene.textures.size());
-      scene.textures.push_back({raw.path, std::move(*image)});
+      if (image->clipped)
+        defects.add(DefectKind::texture_clipped, [&] { return raw.path.string(); });
+      scene.textures.push_back({raw.path, std::move(image->image)});
       continue;
     }
     const bool missing = image.status().code() == ErrorCode::not_found;

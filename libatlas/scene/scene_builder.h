@@ -19,6 +19,8 @@
 
 namespace atlas {
 
+struct TextureImage;
+
 // A texture before it is decoded: a file, or encoded bytes embedded in the scene's file.
 struct RawTexture {
   std::filesystem::path path;  // of the file, or a name for messages
@@ -188,7 +190,7 @@ class SceneBuilder {
   void place_materials(const ReadOptions& options, Scene& scene);
   void load_textures(Scene& scene, bool encoded);
   bool keep_encoded(RawTexture& raw, Scene& scene) const;
-  Result<Image8> load_texture(const RawTexture& raw) const;
+  Result<TextureImage> load_texture(const RawTexture& raw) const;
 
   bool all_usable_ = true, any_texcoord_ = false, any_normal_ = false;
   std::vector<std::uint32_t> indices_, texcoord_indices_, normal_indices_;

@@ -25,6 +25,7 @@ class AppearanceParser {
       if (material_.name.empty()) material_.name = name;
     });
     if (material_.texture >= 0) {
+      material_.unlit = !has_material_;
       material_.diffuse = {1, 1, 1};  // colours of a texture take its place
       if (material_.name.empty()) material_.name = image_;
     }
@@ -48,6 +49,7 @@ class AppearanceParser {
   void material() {
     scan_.read_node(scan_.next(), [&](std::string_view type, std::string_view name) {
       if (type != "Material") scan_.fail("a Material expected");
+      has_material_ = true;
       material_.name = name;
       material_.diffuse = {0.8f, 0.8f, 0.8f};
       scan_.fields([&](std::string_view field) {
@@ -117,6 +119,7 @@ class AppearanceParser {
   SceneBuilder& builder_;
   RawMaterial material_;
   std::string image_;
+  bool has_material_ = false;
 };
 
 }  // namespace

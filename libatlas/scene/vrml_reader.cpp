@@ -48,7 +48,7 @@ bool is_group(std::string_view type) {
 // Materials with the same key are the same in all that is read.
 auto key_of(const RawMaterial& m) {
   return std::tuple(m.name, m.texture, m.wrap_u, m.wrap_v, m.uv_u, m.uv_v, m.opacity,
-                    m.double_sided, m.diffuse.x, m.diffuse.y, m.diffuse.z, m.emission.x,
+                    m.double_sided, m.unlit, m.diffuse.x, m.diffuse.y, m.diffuse.z, m.emission.x,
                     m.emission.y, m.emission.z);
 }
 

@@ -68,10 +68,10 @@ void fit_planes(Camera& camera, const Box3& box) {
   const double radius = radius_of(box, centre);
   const double distance = glm::length(to_glm(camera.eye) - centre);
   camera.far_plane = distance + radius * 1.01;
-  // Near enough that a walker in a hall of a kilometre sees a wall at arm's length. Depths are
-  // floats, which are densest far away: a floor of two triangles from the feet to the horizon was
-  // measured to be as clean even with a factor of 1e-6.
-  camera.near_plane = std::max(distance - radius * 1.01, camera.far_plane * 1e-4);
+  // Near enough that a walker on 100 km of ground sees a wall at arm's length. Depths are floats,
+  // which are densest far away: a floor of two triangles from the feet to the horizon is as clean
+  // as with a factor of 1e-4.
+  camera.near_plane = std::max(distance - radius * 1.01, camera.far_plane * 1e-6);
 }
 
 Camera camera_for(const Box3& box, const Vec3d& up, double fov_degrees) {

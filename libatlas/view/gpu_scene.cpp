@@ -39,12 +39,16 @@ void attach(const GlVertexArray& array, GLuint index, const Attribute& attribute
 }
 
 // Stores reflectances as 16-bit fractions: half the bytes of floats, and finer than any display.
-GlBuffer colour_buffer(const std::vector<Vec3f>& colours) {
+// The fourth is 0 where a material is unlit.
+GlBuffer colour_buffer(const ViewScene& scene) {
   std::vector<std::uint16_t> packed;
-  packed.reserve(colours.size() * 4);
-  for (const Vec3f& c : colours)
-    for (float v : {c.x, c.y, c.z, 1.0f})
+  packed.reserve(scene.colours.size() * 4);
+  for (std::size_t i = 0; i < scene.colours.size(); ++i) {
+    const Vec3f& c = scene.colours[i];
+    const bool unlit = !scene.unlit_vertices.empty() && scene.unlit_vertices[i] != 0;
+    for (float v : {c.x, c.y, c.z, unlit ? 0.0f : 1.0f})
       packed.push_back(std::uint16_t(std::lround(std::clamp(v, 0.0f, 1.0f) * 65535)));
+  }
   return buffer_of(packed);
 }
 
@@ -57,11 +61,15 @@ Result<GlTexture> texture_of(const Texture& texture) {
                   fmt::format("{}: a texture of {} x {} texels; the driver takes 1 to {}",
                               texture.path.string(), image.width, image.height, largest)};
   const int n = image.channels;
-  // Grey is expanded to three channels, since sRGB formats exist for three and four only.
+  // Grey is expanded to three channels, since sRGB formats exist for three and four only. The last
+  // one of an even number is alpha.
   std::vector<std::uint8_t> rgba(std::size_t(image.width) * image.height * 4);
   for (std::size_t i = 0; i < rgba.size() / 4; ++i)
     for (int c = 0; c < 4; ++c)
-      rgba[i * 4 + c] = c == 3 ? 255 : image.texels[i * n + (n >= 3 ? c : 0)];
+      rgba[i * 4 + c] = c == 3 && n % 2 == 1 ? 255
+                                             : image.texels[i * n + (c == 3   ? n - 1
+                                                                     : n >= 3 ? c
+                                                                              : 0)];
   const int levels = std::bit_width(unsigned(std::max(image.width, image.height)));
   GlTexture t = make_texture(GL_SRGB8_ALPHA8, image.width, image.height, levels);
   glTextureSubImage2D(t.get(), 0, 0, 0, image.width, image.height, GL_RGBA, GL_UNSIGNED_BYTE,
@@ -81,18 +89,20 @@ GLint wrap_of(TextureWrap wrap) {
 // from pictures with finer sampling than without a limit.
 constexpr GLint kPageLevels = 3;
 
-// If `pages` is set, textures that are clamped at their edges are atlas pages.
-void make_samplers(GpuScene& gpu, bool pages) {
+GlSampler make_sampler(TextureWrap u, TextureWrap v) {
+  GlSampler s = create<GlSampler>(glCreateSamplers);
+  glSamplerParameteri(s.get(), GL_TEXTURE_MIN_FILTER, GL_LINEAR_MIPMAP_LINEAR);
+  glSamplerParameteri(s.get(), GL_TEXTURE_WRAP_S, wrap_of(u));
+  glSamplerParameteri(s.get(), GL_TEXTURE_WRAP_T, wrap_of(v));
+  return s;
+}
+
+void make_samplers(GpuScene& gpu) {
   for (int u = 0; u < 3; ++u)
-    for (int v = 0; v < 3; ++v) {
-      GlSampler& s = gpu.samplers[std::size_t(u)][std::size_t(v)];
-      s = create<GlSampler>(glCreateSamplers);
-      glSamplerParameteri(s.get(), GL_TEXTURE_MIN_FILTER, GL_LINEAR_MIPMAP_LINEAR);
-      if (pages && TextureWrap(u) == TextureWrap::clamp && TextureWrap(v) == TextureWrap::clamp)
-        glSamplerParameteri(s.get(), GL_TEXTURE_MAX_LOD, kPageLevels);
-      glSamplerParameteri(s.get(), GL_TEXTURE_WRAP_S, wrap_of(TextureWrap(u)));
-      glSamplerParameteri(s.get(), GL_TEXTURE_WRAP_T, wrap_of(TextureWrap(v)));
-    }
+    for (int v = 0; v < 3; ++v)
+      gpu.samplers[std::size_t(u)][std::size_t(v)] = make_sampler(TextureWrap(u), TextureWrap(v));
+  gpu.page_sampler = make_sampler(TextureWrap::clamp, TextureWrap::clamp);
+  glSamplerParameteri(gpu.page_sampler.get(), GL_TEXTURE_MAX_LOD, kPageLevels);
 }
 
 Status upload_textures(const ViewScene& scene, GpuScene& gpu) {
@@ -101,8 +111,8 @@ Status upload_textures(const ViewScene& scene, GpuScene& gpu) {
     if (!made.ok()) return made.status();
     gpu.textures.push_back(std::move(made.value()));
   }
-  make_samplers(gpu, scene.textures_hold_light);
-  const std::uint8_t v = scene.textures_hold_light ? 0 : 255, texel[4] = {v, v, v, 255};
+  make_samplers(gpu);
+  const std::uint8_t texel[4] = {255, 255, 255, 255};
   gpu.blank = make_texture(GL_RGBA8, 1, 1);
   glTextureSubImage2D(gpu.blank.get(), 0, 0, 0, 1, 1, GL_RGBA, GL_UNSIGNED_BYTE, texel);
   return {};
@@ -110,19 +120,28 @@ Status upload_textures(const ViewScene& scene, GpuScene& gpu) {
 
 }  // namespace
 
+void GpuScene::bind_texture(const ViewScene::Look& look) const {
+  const GlTexture& texture = look.texture < 0 ? blank : textures[std::size_t(look.texture)];
+  const GlSampler& sampler =
+      look.page ? page_sampler : samplers[std::size_t(look.wrap_u)][std::size_t(look.wrap_v)];
+  glBindTextureUnit(0, texture.get());
+  glBindSampler(0, sampler.get());
+}
+
 Result<GpuScene> upload(const ViewScene& scene) {
   GpuScene gpu;
   gpu.bounds = scene.bounds;
+  gpu.middle = scene.middle;
   const glm::dvec3 origin = (to_glm(scene.bounds.low) + to_glm(scene.bounds.high)) * 0.5;
   gpu.origin = from_glm(origin);
   gpu.positions = buffer_of(moved(scene.positions, origin));
   gpu.normals = buffer_of(scene.normals);
-  gpu.colours = colour_buffer(scene.colours);
+  gpu.colours = colour_buffer(scene);
   gpu.indices = buffer_of(scene.indices);
   gpu.lit = create<GlVertexArray>(glCreateVertexArrays);
   attach(gpu.lit, 0, {gpu.positions, 3, GL_FLOAT, sizeof(Vec3f)});
   attach(gpu.lit, 1, {gpu.normals, 3, GL_FLOAT, sizeof(Vec3f)});
-  attach(gpu.lit, 2, {gpu.colours, 3, GL_UNSIGNED_SHORT, 8});
+  attach(gpu.lit, 2, {gpu.colours, 4, GL_UNSIGNED_SHORT, 8});
   if ((gpu.textured = scene.textured())) {
     gpu.texcoords = buffer_of(scene.texcoords);
     attach(gpu.lit, 3, {gpu.texcoords, 2, GL_FLOAT, sizeof(Vec2f)});
@@ -145,8 +164,13 @@ Result<GpuScene> upload(const ViewScene& scene) {
   glVertexArrayElementBuffer(gpu.casters.get(), gpu.caster_indices.get());
 
   gpu.clusters = scene.clusters;
-  gpu.triangles = std::uint32_t(scene.triangle_count());
-  gpu.baked_textures = scene.textures_hold_light;
+  gpu.casters_alone = std::uint32_t(scene.caster_indices.size() / 3);
+  for (const ViewScene::Cluster& c : scene.clusters) {
+    if (c.look.cutoff <= 0) continue;
+    gpu.with_holes.push_back(c);
+    gpu.holed_triangles += c.count / 3;
+  }
+  gpu.unlit = scene.unlit;
   gpu.light_scale = scene.light_scale;
   if (Status s = check_gl("uploading the scene"); !s.ok()) return s;
   return gpu;

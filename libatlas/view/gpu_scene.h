@@ -15,17 +15,21 @@ struct GpuScene {
   GlVertexArray lit, casters;
   std::vector<ViewScene::Cluster> clusters;
   std::vector<GlTexture> textures;  // one per scene texture
-  GlTexture blank;  // for triangles without a texture: white, or black where textures hold light
-  // The samplers of textures, by wrap_u, then by wrap_v.
+  GlTexture blank;                  // for triangles without a texture: white
+  // The samplers of textures, by wrap_u, then by wrap_v, and that of atlas pages.
   std::array<std::array<GlSampler, 3>, 3> samplers;
-  const GlSampler& sampler(const ViewScene::Look& look) const {
-    return samplers[std::size_t(look.wrap_u)][std::size_t(look.wrap_v)];
-  }
-  std::uint32_t triangles = 0;
-  Box3 bounds;  // in the scene's own coordinates, like the clusters' spheres
+  GlSampler page_sampler;
+  // Binds the look's texture and sampler to unit 0. Only for textured scenes.
+  void bind_texture(const ViewScene::Look& look) const;
+  std::uint32_t casters_alone = 0;  // triangles of `casters`
+  // Clusters with holes cast shadows, too, in this order after those; and how many triangles.
+  std::vector<ViewScene::Cluster> with_holes;
+  std::uint32_t holed_triangles = 0;
+  Box3 bounds, middle;  // in the scene's own coordinates, like the clusters' spheres
   // The box's centre, to which uploaded positions are relative, since floats are finest near zero.
   Vec3d origin;
-  bool textured = false, baked_vertices = false, baked_textures = false, emits = false;
+  bool textured = false, baked_vertices = false, emits = false;
+  Unlit unlit = Unlit::none;
   double light_scale = 1;
 };
 

@@ -173,7 +173,7 @@ void Renderer::Impl::fill_block(const Camera& world_camera, const FrameLight& li
   put(b.background, background_of(options, features));
   const glm::dvec3 l = glm::normalize(to_glm(light.direction));
   put(b.light, {l, options.intensity});
-  const double ambient = scene->baked_vertices || scene->baked_textures ? 0 : options.ambient;
+  const double ambient = scene->baked_vertices || scene->unlit == Unlit::all ? 0 : options.ambient;
   put(b.ambient, {glm::dvec3(ambient), options.exposure});
   b.inverse[3] = float(options.baked_strength * scene->light_scale);
   if (shadow) {
@@ -240,7 +240,6 @@ void Renderer::Impl::draw_surfaces(const Camera& camera, FrameStats& stats) {
   glDepthFunc(GL_GREATER);
   const float far = 0;
   glClearNamedFramebufferfv(into, GL_DEPTH, 0, &far);
-  glUseProgram(program.get());
   glBindVertexArray(scene->lit.get());
   draw_clusters(camera, stats);
 }
@@ -282,7 +281,7 @@ void Renderer::Impl::draw_clusters(const Camera& camera, FrameStats& stats) {
     const glm::vec3 centre = to_glm(c.centre);
     if (!frustum.touches(centre, c.radius)) continue;
     ViewScene::Look look = c.look;
-    if (!features.textured) look = {.one_sided = c.look.one_sided};
+    if (!features.textured && look.cutoff <= 0) look = {.one_sided = c.look.one_sided};
     order.push_back({look, glm::length(centre - eye) - c.radius, i});
   }
   std::sort(order.begin(), order.end());
@@ -296,12 +295,9 @@ void Renderer::Impl::draw_clusters(const Camera& camera, FrameStats& stats) {
       offsets.push_back(reinterpret_cast<const void*>(std::uintptr_t(c.first) * 4));
       stats.triangles_lit += c.count / 3;
     }
-    if (features.textured) {
-      const GlTexture& texture =
-          look.texture < 0 ? scene->blank : scene->textures[std::size_t(look.texture)];
-      glBindTextureUnit(0, texture.get());
-      glBindSampler(0, scene->sampler(look).get());
-    }
+    if (features.textured || look.cutoff > 0) scene->bind_texture(look);
+    glUseProgram(look.cutoff > 0 ? holed.get() : program.get());
+    if (look.cutoff > 0) glUniform1f(0, look.cutoff);
     if (look.one_sided) glEnable(GL_CULL_FACE);
     glMultiDrawElements(GL_TRIANGLES, counts.data(), GL_UNSIGNED_INT, offsets.data(),
                         GLsizei(counts.size()));

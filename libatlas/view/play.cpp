@@ -4,8 +4,6 @@
 #include <zlib.h>
 
 #include <algorithm>
-#include <fstream>
-#include <string_view>
 #include <vector>
 
 #include "libatlas/core/clock.h"
@@ -18,23 +16,6 @@
 
 namespace atlas {
 namespace fs = std::filesystem;
-
-bool textures_hold_light(const fs::path& path) {
-  const std::string extension = lower_extension(path);
-  if (extension == ".wrl" || extension == ".wrz") return true;
-  if (extension != ".gltf" && extension != ".glb") return false;
-  // The document's text names the extension, perhaps after megabytes of embedded data.
-  constexpr std::string_view kName = "KHR_materials_unlit";
-  std::ifstream file(path, std::ios::binary);
-  std::string text;
-  std::vector<char> block(std::size_t{1} << 22);
-  while (file.read(block.data(), std::streamsize(block.size())), file.gcount() > 0) {
-    text.append(block.data(), std::size_t(file.gcount()));
-    if (text.find(kName) != std::string::npos) return true;
-    text.erase(0, text.size() - std::min(text.size(), kName.size() - 1));
-  }
-  return false;
-}
 
 bool world_is_z_up(const fs::path& path) {
   std::error_code error;
@@ -62,19 +43,44 @@ void say_what_is_dark(const Scene& scene, const Context& context) {
                   screens.text(), screens.count == 1 ? "emits" : "emit"));
 }
 
+// Returns whether something should be seen through the material, other than through holes.
+bool is_transparent(const Material& m, const Scene& scene) {
+  const bool alpha =
+      m.texture >= 0 && scene.textures[std::size_t(m.texture)].image.channels % 2 == 0;
+  return m.opacity_textured || m.opacity_by_view ||
+         (m.alpha_mode == AlphaMode::blend && (m.opacity < 1 || alpha));
+}
+
+void say_what_is_opaque(const Scene& scene, const Context& context) {
+  NamedMaterials panes;
+  for (const Material& m : scene.materials)
+    if (is_transparent(m, scene)) panes.add(m);
+  if (panes.count == 0) return;
+  context.say(fmt::format(
+      "{} {} transparent: shown opaque (where the opacity is below 0.5, without a shadow)",
+      panes.text(), panes.count == 1 ? "is" : "are"));
+}
+
 }  // namespace
 
-Result<ViewScene> load_view(const fs::path& path, bool baked_textures, const Context& context) {
-  Result<LoadedScene> loaded = read_scene(path, {}, context);
+Result<ViewScene> load_view(const fs::path& path, const ViewSceneOptions& options,
+                            const Context& context) {
+  ReadOptions read;
+  read.srgb_colours = options.vertices_hold_colours;
+  Result<LoadedScene> loaded = read_scene(path, read, context);
   if (!loaded.ok()) return loaded.status();
   for (const std::string& line : loaded->defects.lines()) context.say("defect: " + line);
   say_what_is_dark(loaded->scene, context);
-  ViewSceneOptions options;
-  options.textures_hold_light = baked_textures;
+  say_what_is_opaque(loaded->scene, context);
   Result<ViewScene> view = make_view_scene(loaded->scene, options);
   if (!view.ok())
     return Status{view.status().code(), path.string() + ": " + view.status().message()};
   return view;
+}
+
+fs::path recorded_frame(const PlayOptions& options, int frame) {
+  const fs::path folder = options.record.empty() ? "recording" : options.record;
+  return folder / fmt::format("frame{:05}.png", frame);
 }
 
 Result<PlaySummary> play_headless(GlContext& gl, Renderer& renderer, const PlayOptions& options,
@@ -100,8 +106,9 @@ Result<PlaySummary> play_headless(GlContext& gl, Renderer& renderer, const PlayO
     if (!stats.ok()) return stats.status();
     times.push_back(wall_seconds() - start);
     if (!options.record.empty()) {
-      const fs::path file = options.record / fmt::format("frame{:05}.png", f);
+      const fs::path file = recorded_frame(options, f);
       if (Status s = write_picture(file, renderer.read_image()); !s.ok()) return s;
+      ++summary.recorded;
     }
     context.report("frames", double(f + 1) / options.frames);
   }

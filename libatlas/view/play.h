@@ -11,39 +11,40 @@
 
 namespace atlas {
 
-// Returns whether a file's textures hold light instead of reflectance: those of VRML worlds (which
-// atlas-export writes), and of glTF whose materials are unlit. Returns false for a glTF file that
-// cannot be read.
-bool textures_hold_light(const std::filesystem::path& path);
-
 // Returns whether a file is a VRML world that says that its z axis points up. Returns false if the
 // file cannot be read.
 bool world_is_z_up(const std::filesystem::path& path);
 
 // Reads the scene at `path` and returns arrays to draw. Errors: those of the readers; bad_input if
-// nothing is drawn. Reports through the context what the readers left out or replaced.
-Result<ViewScene> load_view(const std::filesystem::path& path, bool baked_textures,
+// nothing is drawn. Reports through the context what the readers left out or replaced, and what is
+// not shown. Colours at the vertices (ViewSceneOptions::vertices_hold_colours) are read as sRGB.
+Result<ViewScene> load_view(const std::filesystem::path& path, const ViewSceneOptions& options,
                             const Context& context);
 
 struct PlayOptions {
   LightPath light = {};
-  Camera camera = {};                 // the camera at the start
-  double degrees_per_frame = 0.5;     // headless
-  double degrees_per_second = 15;     // in a window
-  double max_step = 2;                // in a window: most degrees per frame, see LightClock
-  int frames = 1;                     // headless: how many are drawn
-  int close_after = 0;                // in a window: frames until it closes by itself; 0: never
-  std::filesystem::path record = {};  // a folder for frame00000.png and so on; empty: none
+  Camera camera = {};              // the camera at the start
+  double degrees_per_frame = 0.5;  // headless
+  double degrees_per_second = 15;  // in a window
+  double max_step = 2;             // in a window: most degrees per frame, see LightClock
+  int frames = 1;                  // headless: how many are drawn
+  int close_after = 0;             // in a window: frames until it closes by itself; 0: never
+  // A folder for frame00000.png and so on (recorded_frame()); empty: none, in a window "recording".
+  std::filesystem::path record = {};
   // PNG file; empty: none. Headless, it gets the last frame; in a window, what F12 takes, and what
   // was last shown before close_after.
   std::filesystem::path screenshot = {};
 };
+
+// Returns the name of a recording's frame, counted from 0.
+std::filesystem::path recorded_frame(const PlayOptions& options, int frame);
 
 struct PlaySummary {
   int frames = 0;
   std::int64_t shadow_passes = 0;
   std::int64_t gl_errors = 0;  // reported by the driver; counted in debug contexts
   double median_seconds = 0;   // per frame, wall-clock time
+  int recorded = 0;            // frames that were written
 };
 
 // Draws options.frames frames. Fails with the first GL error, if the context is lost

@@ -281,13 +281,13 @@ class Player {
   Status save() {
     namespace fs = std::filesystem;
     if (recording_) {
-      const fs::path folder = options_.record.empty() ? "recording" : options_.record;
+      const fs::path file = recorded_frame(options_, summary_.recorded);
       std::error_code error;
-      fs::create_directories(folder, error);
-      if (error) return {ErrorCode::io, folder.string() + ": " + error.message()};
-      const Status s = write_picture(folder / fmt::format("frame{:05}.png", recorded_++),
-                                     renderer_.read_image());
+      fs::create_directories(file.parent_path(), error);
+      if (error) return {ErrorCode::io, file.parent_path().string() + ": " + error.message()};
+      const Status s = write_picture(file, renderer_.read_image());
       if (!s.ok()) return s;
+      ++summary_.recorded;
     }
     if (!std::exchange(shoot_, false)) return {};
     const fs::path file = options_.screenshot.empty() ? "screenshot.png" : options_.screenshot;
@@ -311,7 +311,6 @@ class Player {
   double stride_ = 1, stride_range_ = 1;
   float speed_ = 15, azimuth_ = 45, elevation_ = 45;
   bool paused_ = false, by_hand_ = false, recording_ = false, shoot_ = false, panel_shown_ = true;
-  int recorded_ = 0;
   std::string message_;
 };
 

@@ -8,7 +8,6 @@
 #include <limits>
 
 #include "libatlas/core/degrees.h"
-#include "libatlas/core/glm_bridge.h"
 #include "libatlas/view/context.h"
 #include "libatlas/view/renderer_impl.h"
 
@@ -31,7 +30,8 @@ ShaderFeatures needed_features(const GpuScene& scene, const RenderOptions& optio
   f.visibility = options.show_visibility;
   f.pcf = options.pcf;
   f.textured = scene.textured && !f.visibility;
-  f.baked_textures = scene.baked_textures && f.textured;
+  f.some_unlit = scene.unlit == Unlit::some && !f.visibility;
+  f.all_unlit = scene.unlit == Unlit::all && !f.visibility;
   f.baked_vertices = scene.baked_vertices && !f.visibility;
   f.emission = scene.emits && !f.visibility;
   if (options.shading != Shading::unlit) switch (options.shadows) {
@@ -171,7 +171,15 @@ Status Renderer::Impl::compile(const ShaderFeatures& wanted) {
   const ShaderText text = shader_text(wanted);
   Result<GlProgram> made = link_program("of the scene", text.vertex, text.fragment);
   if (!made.ok()) return made.status();
-  GlProgram second;
+  GlProgram second, with_holes;
+  if (!scene->with_holes.empty()) {
+    ShaderFeatures f = wanted;
+    f.holes = true;
+    const ShaderText holes = shader_text(f);
+    Result<GlProgram> other = link_program("of the scene's holes", holes.vertex, holes.fragment);
+    if (!other.ok()) return other.status();
+    with_holes = std::move(other.value());
+  }
   if (!text.lighting_fragment.empty()) {
     Result<GlProgram> light =
         link_program("of the light", text.lighting_vertex, text.lighting_fragment);
@@ -179,6 +187,7 @@ Status Renderer::Impl::compile(const ShaderFeatures& wanted) {
     second = std::move(light.value());
   }
   program = std::move(made.value());
+  holed = std::move(with_holes);
   lighting = std::move(second);
   features = wanted;
   return {};
@@ -197,7 +206,8 @@ Status Renderer::Impl::apply(const RenderOptions& wanted) {
     shadow.reset();
     shadow_maps = 0;
     if (maps) {
-      Result<ShadowPass> made = ShadowPass::make(wanted.map_resolution, maps, wanted.map_bits);
+      Result<ShadowPass> made = ShadowPass::make(wanted.map_resolution, maps, wanted.map_bits,
+                                                 !scene->with_holes.empty());
       if (!made.ok()) return made.status();
       shadow = std::move(made.value());
       shadow_maps = maps;
@@ -211,38 +221,6 @@ Status Renderer::Impl::apply(const RenderOptions& wanted) {
   }
   options = wanted;
   return {};
-}
-
-Result<LightFit> Renderer::Impl::fit(const Camera& camera, const Vec3d& direction) const {
-  LightFitOptions f;
-  f.resolution = options.map_resolution;
-  f.up = options.up;
-  f.snap = options.snap;
-  // Leaves room for filters, and for the march to look beside the fitted part.
-  f.border_texels = options.map_resolution / 128.0;
-  if (options.fit_view) {
-    f.view = true;
-    const glm::dvec3 size = to_glm(scene->bounds.high) - to_glm(scene->bounds.low);
-    const double reach = options.view_distance > 0 ? options.view_distance : glm::length(size) / 4;
-    // A third more than is visible, so that the camera can move some way before the keys must be
-    // drawn anew.
-    f.view_corners = view_corners(camera, double(options.width) / options.height, reach * 1.33);
-  }
-  return fit_light(direction, scene->bounds, f);
-}
-
-bool Renderer::Impl::view_left_the_keys(const Camera& camera) const {
-  if (!options.fit_view || !view_fit_valid) return false;
-  const glm::dvec3 size = to_glm(scene->bounds.high) - to_glm(scene->bounds.low);
-  const double reach = options.view_distance > 0 ? options.view_distance : glm::length(size) / 4;
-  const auto corners = view_corners(camera, double(options.width) / options.height, reach);
-  const LightFit* const fits[] = {&view_fit, &shadow->fit(sampled[0]), &shadow->fit(sampled[1])};
-  for (const LightFit* fit : fits)
-    for (const Vec3d& corner : corners) {
-      const Vec3d m = transform_point(fit->to_texture, corner);
-      if (!(m.x >= 0 && m.x <= 1 && m.y >= 0 && m.y <= 1)) return true;
-    }
-  return false;
 }
 
 Status Renderer::Impl::draw_shadow_maps(const Camera& camera, const FramePlan& plan,
@@ -379,7 +357,7 @@ std::vector<std::string> Renderer::plan() const {
                                 i.shadow->resolution(), i.shadow->resolution(), i.shadow->bits(),
                                 name_of(i.options.shadows)));
   if (!i.scene->textured) lines.push_back("no texture code: the scene has no textures");
-  if (!i.scene->baked_vertices && !i.scene->baked_textures)
+  if (!i.scene->baked_vertices && i.scene->unlit != Unlit::all)
     lines.push_back("no baked light: the scene brings none");
   return lines;
 }

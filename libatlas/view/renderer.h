@@ -50,7 +50,8 @@ struct RenderOptions {
   // a wall one texel thick leaks from 0.1 on. Neither is negative.
   double slope_bias = 0.07, normal_offset = 1.0;
   bool fit_view = false;  // fits maps to the view instead of the whole scene
-  // fit_view: how far shadows reach, >= 0; 0: a quarter of the scene's diagonal.
+  // fit_view: how far from the camera shadows reach, >= 0; 0: to the far side of the sphere around
+  // ViewScene::middle, with a quarter of its radius to spare.
   double view_distance = 0;
   bool snap = true;
   ScheduleOptions schedule = {};  // interval and slicing; the method sets `blend`
@@ -82,6 +83,12 @@ struct FrameStats {
   bool refreshed = false;  // the schedule had to draw its maps at once
   double key_degrees = 0;  // angle between the keys that are sampled
   double t = 0;
+};
+
+// Lengths in the scene's unit.
+struct MapReach {
+  double distance = 0;  // from the camera, as far as shadows reach; 0: all of the scene has them
+  double texel = 0;     // of a side of a shadow map's texel; 0: there are no maps
 };
 
 class Renderer {
@@ -119,6 +126,8 @@ class Renderer {
 
   // Returns how many shadow maps have been begun so far.
   std::int64_t shadow_passes() const;
+  // Returns what maps cover that are drawn for this camera and light. Errors: those of fit_light().
+  Result<MapReach> map_reach(const Camera& camera, const Vec3d& direction) const;
   const Box3& bounds() const;
   // Returns what is compiled and allocated, and why the rest is not, one line each.
   std::vector<std::string> plan() const;

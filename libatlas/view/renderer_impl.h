@@ -1,4 +1,4 @@
-// Internal: the renderer's state, shared by renderer.cpp and lit_pass.cpp.
+// Internal: the renderer's state, shared by renderer.cpp, map_reach.cpp and lit_pass.cpp.
 #pragma once
 
 #include <compare>
@@ -16,7 +16,8 @@ struct Renderer::Impl {
   std::shared_ptr<const GpuScene> scene;
   RenderOptions options;
   ShaderFeatures features;
-  GlProgram program, lighting;  // lighting: none if the scene is unlit
+  // holed: for clusters with holes, none without them; lighting: none if the scene is unlit
+  GlProgram program, holed, lighting;
   GlBuffer frame_block;
   GlFramebuffer target;
   GlRenderbuffer colour;
@@ -56,6 +57,8 @@ struct Renderer::Impl {
   Result<FrameStats> draw(const Camera& camera, const FrameLight& light);
   Status draw_shadow_maps(const Camera& camera, const FramePlan& plan, FrameStats& stats);
   Result<LightFit> fit(const Camera& camera, const Vec3d& direction) const;
+  // Returns how far from the camera shadows reach with fit_view, see RenderOptions::view_distance.
+  double reach(const Camera& camera) const;
   bool view_left_the_keys(const Camera& camera) const;
   void draw_lit(const Camera& camera, const FrameLight& light, const FramePlan& plan,
                 FrameStats& stats);

@@ -33,7 +33,8 @@ layout(std140, binding = 0) uniform Frame {
 } frame;
 )";
 
-// The first pass of a lit scene stores in each pixel, 16 bits per value: the reflectance, the light
+// The first pass of a lit scene stores in each pixel, 16 bits per value: the reflectance (negative
+// where the moving light is not added), the light
 // that shadows do not affect (exposed; from 2 on, the pixel is white whatever is added), and the
 // normal in octahedral encoding (Meyer et al. 2010).
 constexpr const char* kWriteSurface = R"(
@@ -94,6 +95,10 @@ bool coloured(const ShaderFeatures& f) {
   return !f.visibility;
 }
 
+bool samples_texture(const ShaderFeatures& f) {
+  return (coloured(f) && f.textured) || f.holes;
+}
+
 std::string vertex_text(const ShaderFeatures& f) {
   std::string s = "#version 450 core\n";
   s += kFrameBlock;
@@ -105,8 +110,8 @@ std::string vertex_text(const ShaderFeatures& f) {
     body += fmt::format("  v_{0} = {0};\n", name);
   };
   if (lit(f)) pass(1, "vec3", "normal");
-  if (coloured(f)) pass(2, "vec3", "colour");
-  if (coloured(f) && f.textured) pass(3, "vec2", "texcoord");
+  if (coloured(f)) pass(2, f.some_unlit ? "vec4" : "vec3", "colour");
+  if (samples_texture(f)) pass(3, "vec2", "texcoord");
   if (coloured(f) && f.baked_vertices) pass(4, "vec3", "illumination");
   if (coloured(f) && f.emission) pass(5, "vec3", "emission");
   return s + "void main() {\n" + body + "}\n";
@@ -115,17 +120,24 @@ std::string vertex_text(const ShaderFeatures& f) {
 // Computes `reflectance`, and `own`, the exposed light that the surface shows without the moving
 // light.
 std::string colours_text(const ShaderFeatures& f) {
-  std::string s = "  vec3 reflectance = v_colour;\n";
-  if (f.textured && !f.baked_textures) s += "  reflectance *= texture(diffuse, v_texcoord).rgb;\n";
+  const char* shown = f.all_unlit ? "colour" : "reflectance";
+  std::string s =
+      fmt::format("  vec3 reflectance = {};\n", f.some_unlit ? "v_colour.rgb" : "v_colour");
+  if (f.all_unlit) s += "  vec3 colour = reflectance;\n";
+  if (f.some_unlit) s += "  bool unlit = v_colour.a < 0.5;\n";
+  if (f.textured) s += fmt::format("  {} *= texture(diffuse, v_texcoord).rgb;\n", shown);
   if (f.baked_vertices)
     s += "  vec3 light = v_illumination * frame.inverse.w;\n";
+  else if (f.all_unlit)
+    s += "  vec3 light = vec3(frame.inverse.w);\n";
   else
-    s += lit(f) || f.baked_textures ? "  vec3 light = vec3(0.0);\n" : "  vec3 light = vec3(1.0);\n";
+    s += lit(f) ? "  vec3 light = vec3(0.0);\n" : "  vec3 light = vec3(1.0);\n";
+  if (f.some_unlit && !f.baked_vertices) s += "  if (unlit) light = vec3(frame.inverse.w);\n";
+  if (lit(f)) s += f.some_unlit ? "  if (!unlit)" : "";
   if (lit(f)) s += "  light += frame.ambient.rgb;\n";
-  s += "  vec3 own = reflectance * light;\n";
-  if (f.textured && f.baked_textures)
-    s += "  own += texture(diffuse, v_texcoord).rgb * frame.inverse.w;\n";
+  s += fmt::format("  vec3 own = {} * light;\n", shown);
   if (f.emission) s += "  own += v_emission;\n";
+  if (lit(f) && f.some_unlit) s += "  if (unlit) reflectance = vec3(-1.0);\n";
   return s + "  own *= frame.ambient.w;\n";
 }
 
@@ -142,8 +154,9 @@ std::string fragment_text(const ShaderFeatures& f) {
   std::string s = "#version 450 core\n";
   s += kFrameBlock;
   if (lit(f)) s += "layout(location = 1) in vec3 v_normal;\n";
-  if (coloured(f)) s += "layout(location = 2) in vec3 v_colour;\n";
-  if (coloured(f) && f.textured)
+  if (coloured(f))
+    s += fmt::format("layout(location = 2) in {} v_colour;\n", f.some_unlit ? "vec4" : "vec3");
+  if (samples_texture(f))
     s += "layout(location = 3) in vec2 v_texcoord;\nlayout(binding = 0) uniform sampler2D "
          "diffuse;\n";
   if (coloured(f) && f.baked_vertices) s += "layout(location = 4) in vec3 v_illumination;\n";
@@ -152,7 +165,9 @@ std::string fragment_text(const ShaderFeatures& f) {
               : "layout(location = 0) out vec4 result;\n";
   if (lit(f)) s += kWriteSurface;
   if (!lit(f) && coloured(f)) s += kEncode;
+  if (f.holes) s += "layout(location = 0) uniform float cutoff;\n";
   s += "void main() {\n";
+  if (f.holes) s += "  if (texture(diffuse, v_texcoord).a < cutoff) discard;\n";
   if (coloured(f)) s += colours_text(f);
   if (lit(f)) {
     s += coloured(f) ? "  result = surface_of(v_normal, reflectance, own);\n"
@@ -183,7 +198,15 @@ std::string lighting_text(const ShaderFeatures& f) {
     return;
   }
   uvec4 surface = texelFetch(surfaces, pixel, 0);
-  vec3 ray = frame.first_ray.xyz + gl_FragCoord.x * frame.ray_x.xyz + gl_FragCoord.y * frame.ray_y.xyz;
+)";
+  if (coloured(f) && f.some_unlit)
+    s += R"(  if (unpackHalf2x16(surface.x).x < 0.0) {
+    result = encoded(vec3(unpackHalf2x16(surface.y).y, unpackHalf2x16(surface.z)));
+    return;
+  }
+)";
+  s +=
+      R"(  vec3 ray = frame.first_ray.xyz + gl_FragCoord.x * frame.ray_x.xyz + gl_FragCoord.y * frame.ray_y.xyz;
   float far = 1.0 / (frame.first_ray.w + frame.ray_x.w * depth);
   vec3 away = ray * far;
   vec3 n = unfold(unpackSnorm2x16(surface.w));
@@ -252,7 +275,8 @@ std::vector<std::string> feature_names(const ShaderFeatures& f) {
     names.push_back(kSampling[int(f.shadow)]);
     names.push_back(fmt::format("pcf {}", f.pcf));
   }
-  if (f.textured) names.push_back(f.baked_textures ? "baked textures" : "diffuse textures");
+  if (f.textured) names.push_back(f.all_unlit ? "baked textures" : "diffuse textures");
+  if (f.some_unlit || (f.all_unlit && !f.textured)) names.push_back("unlit materials");
   if (f.baked_vertices) names.push_back("baked vertex light");
   if (f.emission) names.push_back("emission");
   if (f.visibility) names.push_back("visibility output");

@@ -28,8 +28,12 @@ struct ShaderFeatures {
   ShadowSampling shadow = ShadowSampling::none;
   bool textured = false;        // diffuse textures
   bool baked_vertices = false;  // illumination at the vertices
-  bool baked_textures = false;  // the textures hold light (an exported atlas), not reflectance
-  bool emission = false;        // materials that emit light
+  // Unlit materials show their colours and textures as light (those of an exported atlas). If only
+  // some are unlit, the moving light leaves them alone; if all are, it is added to them as to
+  // surfaces that reflect what their colours do without the textures.
+  bool some_unlit = false, all_unlit = false;
+  bool emission = false;    // materials that emit light
+  bool holes = false;       // where a texture's alpha is below the uniform at location 0
   int pcf = 3;              // 0: nearest texel; 1: bilinear; 3, 5: that many bilinear taps per side
   bool visibility = false;  // write the light's visibility instead of a colour
   bool operator==(const ShaderFeatures&) const = default;

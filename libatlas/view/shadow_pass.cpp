@@ -14,6 +14,24 @@ layout(location = 0) uniform mat4 to_clip;
 void main() { gl_Position = to_clip * vec4(position, 1.0); }
 )";
 constexpr const char* kFragment = "#version 450 core\nvoid main() {}\n";
+constexpr const char* kHoledVertex = R"(#version 450 core
+layout(location = 0) in vec3 position;
+layout(location = 3) in vec2 texcoord;
+layout(location = 3) out vec2 v_texcoord;
+layout(location = 0) uniform mat4 to_clip;
+void main() {
+  gl_Position = to_clip * vec4(position, 1.0);
+  v_texcoord = texcoord;
+}
+)";
+constexpr const char* kHoledFragment = R"(#version 450 core
+layout(location = 3) in vec2 v_texcoord;
+layout(location = 4) uniform float cutoff;
+layout(binding = 0) uniform sampler2D diffuse;
+void main() {
+  if (texture(diffuse, v_texcoord).a < cutoff) discard;
+}
+)";
 
 GlSampler make_sampler(bool compare) {
   GlSampler sampler = create<GlSampler>(glCreateSamplers);
@@ -32,9 +50,34 @@ GlSampler make_sampler(bool compare) {
   return sampler;
 }
 
+// Consecutive triangles of all casters: those of GpuScene::casters, then those with holes.
+struct Part {
+  std::uint32_t begin, end;
+};
+
+void draw_triangles(std::uint32_t first, std::uint32_t count) {
+  glDrawElements(GL_TRIANGLES, GLsizei(count * 3), GL_UNSIGNED_INT,
+                 reinterpret_cast<const void*>(std::uintptr_t(first) * 12));
+}
+
+// Draws the triangles of a part that have holes.
+void draw_with_holes(const GpuScene& scene, const Part& part) {
+  std::uint32_t at = scene.casters_alone;  // where the next cluster begins
+  for (const ViewScene::Cluster& c : scene.with_holes) {
+    const std::uint32_t begin = std::max(part.begin, at),
+                        end = std::min(part.end, at + c.count / 3);
+    if (begin < end) {
+      scene.bind_texture(c.look);
+      glUniform1f(4, c.look.cutoff);
+      draw_triangles(c.first / 3 + begin - at, end - begin);
+    }
+    at += c.count / 3;
+  }
+}
+
 }  // namespace
 
-Result<ShadowPass> ShadowPass::make(int resolution, int maps, int bits) {
+Result<ShadowPass> ShadowPass::make(int resolution, int maps, int bits, bool holes) {
   GLint largest = 0;
   glGetIntegerv(GL_MAX_TEXTURE_SIZE, &largest);
   if (resolution < 16 || resolution > largest)
@@ -45,6 +88,11 @@ Result<ShadowPass> ShadowPass::make(int resolution, int maps, int bits) {
   if (!program.ok()) return program.status();
   ShadowPass pass;
   pass.program_ = std::move(program.value());
+  if (holes) {
+    Result<GlProgram> holed = link_program("of maps with holes", kHoledVertex, kHoledFragment);
+    if (!holed.ok()) return holed.status();
+    pass.holed_ = std::move(holed.value());
+  }
   pass.compare_ = make_sampler(true);
   pass.plain_ = make_sampler(false);
   pass.resolution_ = resolution;
@@ -84,24 +132,32 @@ std::uint32_t ShadowPass::draw(const GpuScene& scene, const MapWork& work, const
     glDepthMask(GL_TRUE);
     glClearNamedFramebufferfv(map.frame.get(), GL_DEPTH, 0, &far);
   }
+  const std::uint32_t triangles = scene.casters_alone + scene.holed_triangles;
   const auto at = [&](double fraction) {
-    return std::uint32_t(std::lround(std::min(fraction, 1.0) * scene.triangles));
+    return std::uint32_t(std::lround(std::min(fraction, 1.0) * triangles));
   };
-  const std::uint32_t first = at(work.begin), count = at(work.end) - first;
-  if (count == 0) return 0;
+  const Part part{at(work.begin), at(work.end)};
+  if (part.begin == part.end) return 0;
   const Matrix4 to_clip = relative_to(map.fit.to_clip, scene.origin);
   float matrix[16];
   for (int i = 0; i < 16; ++i) matrix[i] = float(to_clip[i]);
-  glUseProgram(program_.get());
-  glUniformMatrix4fv(0, 1, GL_FALSE, matrix);
   glEnable(GL_DEPTH_TEST);
   glDepthFunc(GL_LESS);
   glEnable(GL_DEPTH_CLAMP);  // casters in front of the range still cast shadows
-  glBindVertexArray(scene.casters.get());
-  glDrawElements(GL_TRIANGLES, GLsizei(count * 3), GL_UNSIGNED_INT,
-                 reinterpret_cast<const void*>(std::uintptr_t(first) * 12));
+  if (part.begin < scene.casters_alone) {
+    glUseProgram(program_.get());
+    glUniformMatrix4fv(0, 1, GL_FALSE, matrix);
+    glBindVertexArray(scene.casters.get());
+    draw_triangles(part.begin, std::min(part.end, scene.casters_alone) - part.begin);
+  }
+  if (part.end > scene.casters_alone) {
+    glUseProgram(holed_.get());
+    glUniformMatrix4fv(0, 1, GL_FALSE, matrix);
+    glBindVertexArray(scene.lit.get());
+    draw_with_holes(scene, part);
+  }
   glDisable(GL_DEPTH_CLAMP);
-  return count;
+  return part.end - part.begin;
 }
 
 void ShadowPass::bind_compare(int unit) const {

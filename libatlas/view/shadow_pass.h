@@ -12,8 +12,8 @@ namespace atlas {
 class ShadowPass {
  public:
   // Makes `maps` square depth textures of `resolution` texels a side and `bits` (16, 24, 32) per
-  // texel.
-  static Result<ShadowPass> make(int resolution, int maps, int bits);
+  // texel. `holes`: whether casters have holes.
+  static Result<ShadowPass> make(int resolution, int maps, int bits, bool holes);
 
   // Draws the triangles of `work` into its map. If work.begin is 0, first clears the map and stores
   // `fit`. Returns the number of triangles submitted.
@@ -35,7 +35,7 @@ class ShadowPass {
   GlTexture layers_;
   std::vector<Map> maps_;
   GlSampler compare_, plain_;
-  GlProgram program_;
+  GlProgram program_, holed_;
   int resolution_ = 0, bits_ = 32;
 };
 

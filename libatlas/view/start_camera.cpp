@@ -6,7 +6,7 @@ namespace atlas {
 
 Camera start_camera(const ViewScene& scene, const Vec3d& up, double fov_degrees) {
   Camera camera = camera_for(scene.bounds, up, fov_degrees);
-  if (up.x != 0) return camera;
+  if (up.x != 0 || scene.caster_indices.empty()) return camera;
   ViewpointOptions eye;
   eye.metres_per_unit = scene.metres_per_unit;
   eye.up = up.z != 0 ? Up::z : Up::y;

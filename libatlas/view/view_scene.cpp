@@ -4,7 +4,6 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <numeric>
 #include <span>
 #include <tuple>
 
@@ -111,27 +110,62 @@ Vec3f plain_emission(const Material& material) {
   return material.emission_textured ? Vec3f{} : material.emission;
 }
 
+double light_scale(const std::vector<Vec3f>& illumination) {
+  if (illumination.empty()) return 1;
+  std::vector<float> y;
+  y.reserve(illumination.size());
+  for (const Vec3f& e : illumination) y.push_back(luma(e.x, e.y, e.z));
+  const auto at = y.begin() + std::ptrdiff_t(double(y.size() - 1) * 0.99);
+  std::nth_element(y.begin(), at, y.end());
+  return *at > 0 ? 1.0 / *at : 1.0;
+}
+
+// Returns the box of positions without the outermost 5 % at each end of each axis: the part of a
+// scene that has detail, without the ground or sky around it.
+Box3 middle_of(const std::vector<Vec3f>& positions) {
+  glm::dvec3 low(0), high(0);
+  std::vector<float> values(positions.size());
+  for (int axis = 0; axis < 3 && !values.empty(); ++axis) {
+    for (std::size_t i = 0; i < values.size(); ++i) values[i] = to_glm(positions[i])[axis];
+    const auto at = [&](double fraction) {
+      const auto n = std::ptrdiff_t(std::lround(double(values.size() - 1) * fraction));
+      std::nth_element(values.begin(), values.begin() + n, values.end());
+      return double(values[std::size_t(n)]);
+    };
+    low[axis] = at(0.05);
+    high[axis] = at(0.95);
+  }
+  return {from_glm(low), from_glm(high)};
+}
+
 class Builder {
  public:
   Builder(const Scene& scene, const ViewSceneOptions& options)
       : scene_(scene),
+        hold_light_(options.textures_hold_light),
         welded_(weld(scene.positions)),
         corners_at_(corners_by_vertex(welded_, scene.indices)),
         faces_(face_normals(scene)),
         cosine_(float(cosine_of(options.crease_degrees))),
         first_(scene.indices.size()) {
-    textured_ = scene.textured() && !scene.texcoord_indices.empty();
+    coloured_ = options.vertices_hold_colours && scene.lit();
+    lit_ = scene.lit() && !coloured_;
+    textured_ = scene.textured() && !scene.texcoord_indices.empty() && !coloured_;
     emits_ = std::any_of(scene.materials.begin(), scene.materials.end(),
                          [](const Material& m) { return plain_emission(m) != Vec3f{}; });
-    baked_ = textured_ && options.textures_hold_light;
+    std::size_t unlit = 0;
+    for (const std::uint32_t m : scene.triangle_material) unlit += is_unlit(scene.materials[m]);
+    view_.unlit = unlit == 0                        ? Unlit::none
+                  : unlit == scene.triangle_count() ? Unlit::all
+                                                    : Unlit::some;
   }
 
   ViewScene::Look look_of(std::uint32_t triangle) const {
-    if (!textured_) return {};
-    const Material& m = scene_.materials[scene_.triangle_material[triangle]];
-    const bool one_sided = baked_ && !m.double_sided;
-    if (m.texture < 0) return {.one_sided = one_sided};
-    return {m.texture, m.wrap_u, m.wrap_v, one_sided};
+    const Material& m = material_of(triangle);
+    const bool unlit = is_unlit(m), one_sided = unlit && !m.double_sided;
+    if (!shows_texture(m)) return {.one_sided = one_sided};
+    const bool page = unlit && m.wrap_u == TextureWrap::clamp && m.wrap_v == TextureWrap::clamp;
+    return {m.texture, m.wrap_u, m.wrap_v, one_sided, page, cutoff_of(m)};
   }
 
   // Returns the triangles grouped by look, and within each look along a curve that keeps neighbours
@@ -144,8 +178,9 @@ class Builder {
     }
     const glm::dvec3 size = high - low;
     const double scale = 1023.0 / std::max({size.x, size.y, size.z, 1e-300});
-    std::vector<std::uint32_t> triangles(scene_.triangle_count()), codes(triangles.size());
-    std::iota(triangles.begin(), triangles.end(), 0u);
+    std::vector<std::uint32_t> triangles, codes(scene_.triangle_count());
+    for (std::uint32_t t = 0; t < codes.size(); ++t)
+      if (!is_invisible(material_of(t))) triangles.push_back(t);
     for (std::size_t t = 0; t < codes.size(); ++t) {
       glm::dvec3 sum(0);
       for (int k = 0; k < 3; ++k) sum += to_dvec(scene_.positions[scene_.indices[3 * t + k]]);
@@ -170,10 +205,41 @@ class Builder {
     }
     for (ViewScene::Cluster& c : view_.clusters) enclose(c);
     add_casters();
+    measure();
+    view_.light_scale = light_scale(view_.illumination);
+    const auto full = float(1 / view_.light_scale);
+    for (const std::uint32_t v : on_pages_) view_.illumination[v] = {full, full, full};
     return std::move(view_);
   }
 
  private:
+  const Material& material_of(std::uint32_t triangle) const {
+    return scene_.materials[scene_.triangle_material[triangle]];
+  }
+  // Returns whether holes of a mask depend on a texture.
+  bool has_holes(const Material& m) const {
+    return m.alpha_mode == AlphaMode::mask && shows_texture(m) &&
+           scene_.textures[std::size_t(m.texture)].image.channels % 2 == 0;
+  }
+  bool is_invisible(const Material& m) const {
+    return m.alpha_mode == AlphaMode::mask && !has_holes(m) && m.opacity < m.alpha_cutoff;
+  }
+  // A share of the texture's alpha remains, so the limit is higher; 2 is more than any alpha.
+  float cutoff_of(const Material& m) const {
+    if (!has_holes(m) || m.alpha_cutoff <= 0) return 0;
+    return m.opacity * 2 > m.alpha_cutoff ? m.alpha_cutoff / m.opacity : 2.0f;
+  }
+  // More than half of the light passes through what casts none.
+  bool casts_by_itself(const Material& m) const {
+    const bool clear = m.alpha_mode == AlphaMode::blend && m.opacity < 0.5f;
+    return !clear && !is_invisible(m) && cutoff_of(m) == 0;
+  }
+  bool shows_texture(const Material& m) const { return textured_ && m.texture >= 0; }
+  bool is_unlit(const Material& m) const {
+    if (!hold_light_) return m.unlit;
+    return *hold_light_ && (m.unlit || shows_texture(m));
+  }
+
   std::uint32_t vertex(std::uint32_t t, int k) {
     const std::uint32_t corner = 3 * t + std::uint32_t(k), p = scene_.indices[corner];
     const glm::vec3 n = corner_normal(corners_at_[welded_[p]], faces_, t, cosine_);
@@ -188,11 +254,14 @@ class Builder {
     keys_.push_back(key);
     view_.positions.push_back(scene_.positions[p]);
     view_.normals.push_back(from_glm(n));
-    view_.colours.push_back(scene_.materials[material].diffuse);
-    if (emits_) view_.emission.push_back(plain_emission(scene_.materials[material]));
+    const Material& m = scene_.materials[material];
+    view_.colours.push_back(coloured_ ? scene_.illumination[p] : m.diffuse);
+    if (emits_) view_.emission.push_back(plain_emission(m));
+    if (view_.unlit == Unlit::some) view_.unlit_vertices.push_back(is_unlit(m));
     if (textured_)
       view_.texcoords.push_back(texcoord == kNone ? Vec2f{} : scene_.texcoords[texcoord]);
-    if (scene_.lit()) view_.illumination.push_back(scene_.illumination[p]);
+    if (lit_) view_.illumination.push_back(scene_.illumination[p]);
+    if (lit_ && is_unlit(m) && shows_texture(m)) on_pages_.push_back(vertex);
     return vertex;
   }
 
@@ -215,40 +284,40 @@ class Builder {
 
   void add_casters() {
     std::vector<std::uint32_t> renumbered(scene_.positions.size(), kNone);
-    glm::dvec3 low(1e300), high(-1e300);
-    for (std::uint32_t i : scene_.indices) {
-      const std::uint32_t w = welded_[i];
+    for (std::size_t k = 0; k < scene_.indices.size(); ++k) {
+      if (!casts_by_itself(material_of(std::uint32_t(k / 3)))) continue;
+      const std::uint32_t w = welded_[scene_.indices[k]];
       if (renumbered[w] == kNone) {
         renumbered[w] = std::uint32_t(view_.caster_positions.size());
         view_.caster_positions.push_back(scene_.positions[w]);
-        low = glm::min(low, to_dvec(scene_.positions[w]));
-        high = glm::max(high, to_dvec(scene_.positions[w]));
       }
       view_.caster_indices.push_back(renumbered[w]);
     }
+  }
+
+  void measure() {
+    glm::dvec3 low(1e300), high(-1e300);
+    for (const Vec3f& p : view_.positions) {
+      low = glm::min(low, to_dvec(p));
+      high = glm::max(high, to_dvec(p));
+    }
     view_.bounds = {from_glm(low), from_glm(high)};
+    view_.middle = middle_of(view_.positions);
   }
 
   const Scene& scene_;
+  std::optional<bool> hold_light_;  // ViewSceneOptions::textures_hold_light
   std::vector<std::uint32_t> welded_;
   Buckets corners_at_;  // of each welded vertex
   std::vector<glm::vec3> faces_;
   float cosine_;
-  bool textured_ = false, emits_ = false, baked_ = false;
+  bool textured_ = false, emits_ = false;
+  bool lit_ = false, coloured_ = false;  // what the vertices hold: light, or colours
+  std::vector<std::uint32_t> on_pages_;  // vertices whose textures hold light, if others are lit
   ViewScene view_;
   FirstIndex first_;             // into keys_
   std::vector<CornerKey> keys_;  // of view_'s vertices
 };
-
-double light_scale(const std::vector<Vec3f>& illumination) {
-  if (illumination.empty()) return 1;
-  std::vector<float> y;
-  y.reserve(illumination.size());
-  for (const Vec3f& e : illumination) y.push_back(luma(e.x, e.y, e.z));
-  const auto at = y.begin() + std::ptrdiff_t(double(y.size() - 1) * 0.99);
-  std::nth_element(y.begin(), at, y.end());
-  return *at > 0 ? 1.0 / *at : 1.0;
-}
 
 }  // namespace
 
@@ -257,9 +326,11 @@ Result<ViewScene> make_view_scene(const Scene& scene, const ViewSceneOptions& op
     return Status{ErrorCode::bad_input, "the scene has no triangles: there is nothing to show"};
   if (Status s = check_scene(scene); !s.ok()) return s;
   ViewScene view = Builder(scene, options).build(std::max(options.cluster_triangles, 1u));
+  if (view.indices.empty())
+    return Status{
+        ErrorCode::bad_input,
+        "all triangles are invisible (the opacity of their materials is below the cutoff)"};
   if (view.textured()) view.textures = scene.textures;
-  view.textures_hold_light = options.textures_hold_light && view.textured();
-  view.light_scale = light_scale(view.illumination);
   view.origin = scene.origin;
   view.metres_per_unit = scene.metres_per_unit;
   return view;

@@ -5,6 +5,7 @@
 #include <compare>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "libatlas/core/status.h"
@@ -13,21 +14,29 @@
 
 namespace atlas {
 
+// Which of a scene's materials are unlit: they show light, and reflect none.
+enum class Unlit { none, some, all };
+
 struct ViewScene {
   // Per vertex; an array is empty where the scene has no such thing.
   std::vector<Vec3f> positions = {}, normals = {};
   std::vector<Vec3f> colours = {};   // diffuse reflectance of the material, linear
   std::vector<Vec3f> emission = {};  // of the material, unless a texture shapes it; 1 is white
   std::vector<Vec2f> texcoords = {};
-  std::vector<Vec3f> illumination = {};  // linear, as given
+  // Linear, as given; 1 / light_scale where a texture shows light, to which it adds nothing.
+  std::vector<Vec3f> illumination = {};
+  std::vector<std::uint8_t> unlit_vertices = {};  // 1 or 0; empty unless `unlit` is `some`
   std::vector<std::uint32_t> indices = {};
 
-  // A texture (-1: none), how it continues beyond its edges, and whether triangles are left out
-  // where their back is seen.
+  // A texture (-1: none), how it continues beyond its edges, whether triangles are left out where
+  // their back is seen, whether the texture is an atlas page (it is unlit and clamped), and the
+  // texture's alpha below which there are holes (0: there are none).
   struct Look {
     std::int32_t texture = -1;
     TextureWrap wrap_u = TextureWrap::repeat, wrap_v = TextureWrap::repeat;
     bool one_sided = false;
+    bool page = false;
+    float cutoff = 0;
     auto operator<=>(const Look&) const = default;
   };
 
@@ -41,32 +50,40 @@ struct ViewScene {
   };
   std::vector<Cluster> clusters = {};  // grouped by look
 
-  // What casts shadows: the same triangles over welded positions.
+  // What casts shadows: the same triangles over welded positions, without those that are more than
+  // half transparent, and without clusters with holes, which cast their own shadows.
   std::vector<Vec3f> caster_positions = {};
   std::vector<std::uint32_t> caster_indices = {};
 
   std::vector<Texture> textures = {};
-  bool textures_hold_light = false;  // whether they are atlases with baked light
-  Box3 bounds = {};                  // of the positions that triangles use
-  Vec3d origin = {};                 // added to a position, gives the coordinates of the file
-  double metres_per_unit = 1;        // > 0; used for the height of a visitor's eye
-  double light_scale = 1;            // exposure that puts the 99th percentile of the light at 1
+  Unlit unlit = Unlit::none;
+  Box3 bounds = {};   // of the positions that triangles use
+  Box3 middle = {};   // of these without the 5 % that lie outermost at each end of each axis
+  Vec3d origin = {};  // added to a position, gives the coordinates of the file
+  double metres_per_unit = 1;  // > 0; used for the height of a visitor's eye
+  double light_scale = 1;      // exposure that puts the 99th percentile of the light at 1
 
-  std::size_t triangle_count() const { return caster_indices.size() / 3; }
+  std::size_t triangle_count() const { return indices.size() / 3; }
   bool textured() const { return !texcoords.empty(); }
-  bool baked() const { return !illumination.empty() || textures_hold_light; }
+  bool baked() const { return !illumination.empty() || unlit == Unlit::all; }
 };
 
 struct ViewSceneOptions {
   double crease_degrees = 40;  // faces that meet at less than this are shaded as one surface
-  // Baked pages hold the light of a surface's front. Only on these are materials that are not
-  // double-sided (Material::double_sided) left out from behind.
-  bool textures_hold_light = false;
+  // Whether textures hold light (baked pages) or reflectance. Nothing: as Material::unlit says.
+  // Otherwise all textured materials are unlit, or none is, textured or not. Baked pages hold the
+  // light of a surface's front: unlit materials that are not double-sided (Material::double_sided)
+  // are left out from behind, and no others.
+  std::optional<bool> textures_hold_light = {};
+  // The light at the vertices is the surface's colour (linear, ReadOptions::srgb_colours), as scans
+  // have it: it takes the place of all other reflectance, and textures are not shown.
+  bool vertices_hold_colours = false;
   // Triangles per cluster: few enough to follow the depth order, many enough that their draw calls
   // cost little (256 to 1024 measured alike on the software renderer).
   std::uint32_t cluster_triangles = 512;
 };
 
+// Leaves out triangles that AlphaMode::mask makes invisible. Other transparent ones are opaque.
 // Errors: bad_input if there is no triangle to draw; those of check_scene().
 Result<ViewScene> make_view_scene(const Scene& scene, const ViewSceneOptions& options);
 

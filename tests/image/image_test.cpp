@@ -4,6 +4,7 @@
 #include <zlib.h>
 
 #include <algorithm>
+#include <cmath>
 #include <random>
 
 #include "tests/scene/temp_folder.h"
@@ -135,6 +136,45 @@ TEST(Image, ColoursUnderAlphaStayAsStored) {
   std::copy(texels, texels + 8, image.texels.begin());
   ASSERT_TRUE(write_png(folder / "a.png", image, {}).ok());
   EXPECT_EQ(read_image8(folder / "a.png")->texels, image.texels);
+}
+
+// The codes 200, 100 and 50 are 0.5776, 0.1274 and 0.0319.
+TEST(Image, TexturesOfFloatsAreEncoded) {
+  const TempFolder folder;
+  ImageF linear(2, 1, 4);
+  const float texels[8] = {0.5776f, 0.1274f, 0.0319f, 0.5f, 0, 1, 0.0024f, 1};
+  std::copy(texels, texels + 8, linear.texels.begin());
+  ASSERT_TRUE(write_exr(folder / "a.exr", linear).ok());
+  const auto exr = read_texture(folder / "a.exr");
+  ASSERT_TRUE(exr.ok()) << exr.status().message();
+  EXPECT_EQ(exr->image.texels, (std::vector<std::uint8_t>{200, 100, 50, 128, 0, 255, 8, 255}));
+  EXPECT_FALSE(exr->clipped);
+  // Radiance's texel of four bytes stands for (0.5, 0.25, 0.125).
+  const std::string head = "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 1 +X 1\n";
+  const auto hdr = read_texture(folder.write("a.hdr", head + "\x80\x40\x20\x80"));
+  ASSERT_TRUE(hdr.ok()) << hdr.status().message();
+  EXPECT_EQ(hdr->image.texels, (std::vector<std::uint8_t>{188, 137, 99}));
+  EXPECT_FALSE(hdr->clipped);
+  const auto bright = read_texture(folder.write("b.hdr", head + "\x80\x40\x20\x84"));
+  EXPECT_EQ(bright->image.texels, (std::vector<std::uint8_t>{255, 255, 255}));
+  EXPECT_TRUE(bright->clipped);
+  // What rounding leaves beyond 0 and 1 is not worth a word; what is no number is.
+  linear.texels.assign(8, -1e-6f);
+  linear.texels[0] = 1.001f;
+  ASSERT_TRUE(write_exr(folder / "a.exr", linear).ok());
+  EXPECT_FALSE(read_texture(folder / "a.exr")->clipped);
+  linear.texels[1] = std::nanf("");
+  ASSERT_TRUE(write_exr(folder / "a.exr", linear).ok());
+  EXPECT_TRUE(read_texture(folder / "a.exr")->clipped);
+}
+
+TEST(Image, TexturesOfIntegersAreReadAsTheyAre) {
+  const TempFolder folder;
+  const Image8 image = noise(9, 7, 4);
+  ASSERT_TRUE(write_png(folder / "a.png", image, {}).ok());
+  EXPECT_EQ(read_texture(folder / "a.png")->image.texels, image.texels);
+  EXPECT_EQ(read_texture(folder / "gone.png").status().code(), ErrorCode::not_found);
+  EXPECT_FALSE(read_texture(folder.write("broken.exr", "no image at all")).ok());
 }
 
 // Two names of a file that a program may ask for although they name another format, or none.

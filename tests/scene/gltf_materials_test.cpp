@@ -151,6 +151,20 @@ TEST(Gltf, TexturesWithoutAnImageThatIsReadAreTold) {
 }
 
 // What shapes are made of is read all the same.
+TEST(Gltf, MaterialsAreUnlitIfTheySaySo) {
+  const TempFolder folder;
+  Gltf g;
+  g.j["extensionsUsed"] = {"KHR_materials_unlit"};
+  g.j["materials"] = {{{"name", "lit"}}, {{"name", "unlit"}}};
+  g.j["materials"][1]["extensions"]["KHR_materials_unlit"] = json::object();
+  add_triangle_of_each_material(g, {{"POSITION", g.floats(kSquare, "VEC3", 3)}});
+  const auto loaded = load_glb(folder, g);
+  ASSERT_TRUE(loaded.ok()) << loaded.status().message();
+  ASSERT_EQ(loaded->scene.materials.size(), 2u);
+  EXPECT_FALSE(loaded->scene.materials[0].unlit);
+  EXPECT_TRUE(loaded->scene.materials[1].unlit);
+}
+
 TEST(Gltf, ShadersOfMaterialsAreNamed) {
   const TempFolder folder;
   for (const char* extension : {"KHR_techniques_webgl", "KHR_technique_webgl"}) {

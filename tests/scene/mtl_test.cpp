@@ -41,6 +41,20 @@ TEST(Mtl, TexturesThatAreMissingOrBrokenFallBackToTheColour) {
   EXPECT_TRUE(load(path, options).defects.empty());
 }
 
+TEST(Mtl, TexturesOfLinearValuesAreEncodedAndClipped) {
+  const TempFolder folder;
+  ImageF linear(1, 1, 3);
+  linear.texels = {0.0319f, 0.5776f, 1.5f};
+  ASSERT_TRUE(write_exr(folder / "a.exr", linear).ok());
+  folder.write("m.mtl", "newmtl a\nmap_Kd a.exr\n");
+  const LoadedScene loaded =
+      load(folder.write("s.obj", std::string("mtllib m.mtl\n") + kTexturedTriangle));
+  ASSERT_EQ(loaded.scene.textures.size(), 1u);
+  EXPECT_EQ(loaded.scene.textures[0].image.texels, (std::vector<std::uint8_t>{50, 200, 255}));
+  EXPECT_EQ(loaded.defects.count(DefectKind::texture_clipped), 1u);
+  EXPECT_TRUE(loaded.defects.defects[0].first_places[0].ends_with("a.exr"));
+}
+
 TEST(Mtl, ATextureOfAnotherMachineIsFoundBesideTheMaterials) {
   const TempFolder folder;
   ASSERT_TRUE(write_png(folder / "wood.png", Image8(2, 2, 3, 77), {}).ok());

@@ -53,6 +53,23 @@ TEST(Vrml, SolidFacesAreNotDoubleSided) {
   EXPECT_EQ(scene.materials.size(), 2u);
 }
 
+// As the standard says, a shape without a Material is unlit. What shows no texture either, as files
+// that leave out all appearance, is taken for an ordinary surface.
+TEST(Vrml, TexturesWithoutAMaterialAreUnlit) {
+  const TempFolder folder;
+  const auto shape = [](const std::string& fields) {
+    return "Shape { appearance Appearance { " + fields +
+           " } geometry IndexedFaceSet { coord Coordinate { point [ 0 0 0 0 1 0 0 0 1 ] } "
+           "coordIndex [ 0 1 2 -1 ] } }\n";
+  };
+  const std::string texture = "texture ImageTexture { url \"a.png\" } ";
+  const Scene scene = scene_of(folder, shape(texture) + shape(texture + "material Material { }") +
+                                           shape("") + shape("material Material { } " + texture));
+  std::vector<bool> unlit;
+  for (const std::uint32_t m : scene.triangle_material) unlit.push_back(scene.materials[m].unlit);
+  EXPECT_EQ(unlit, (std::vector<bool>{true, false, false, false}));
+}
+
 // The corner (3, 0, 0) seen from the centre is (2, 0, 0); scaled it is (4, 0, 0), turned (0, 4, 0),
 // seen from 0 again (1, 4, 0), and moved (11, 4, 0).
 TEST(Vrml, TransformsScaleTurnAndMoveInThisOrder) {

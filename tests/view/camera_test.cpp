@@ -83,7 +83,7 @@ TEST(Camera, PlanesEncloseTheBoxAndLittleMore) {
     Camera camera;
     camera.eye = {1, inside, -1};
     fit_planes(camera, box);
-    EXPECT_NEAR(camera.near_plane / camera.far_plane, 1e-4, 1e-9);
+    EXPECT_NEAR(camera.near_plane / camera.far_plane, 1e-6, 1e-11);
   }
 }
 
@@ -150,7 +150,7 @@ TEST(StartCamera, StandsAsHighWhicheverAxisIsUp) {
   EXPECT_NEAR(z.eye.z, y.eye.y, 1e-3);
   expect_near(z.up, {0, 0, 1});
   for (const Camera& camera : {y, z}) {
-    EXPECT_NEAR(camera.near_plane / camera.far_plane, 1e-4, 1e-9) << "it stands inside";
+    EXPECT_NEAR(camera.near_plane / camera.far_plane, 1e-6, 1e-11) << "it stands inside";
     EXPECT_LT(camera.far_plane, 15) << "as far as the room's farthest corner, not farther";
   }
   EXPECT_FALSE(start_camera(hall, {1, 0, 0}).up == (Vec3d{0, 1, 0}));

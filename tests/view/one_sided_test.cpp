@@ -67,9 +67,9 @@ TEST(OneSided, EachSideOfASheetShowsItsOwnLayer) {
     const Result<WorldFile> written = write_world(world, folder / name, files, {});
     ASSERT_TRUE(written.ok()) << written.status().message();
     ASSERT_TRUE(files.commit().ok());
-    ASSERT_TRUE(textures_hold_light(folder / name)) << name;
-    const Result<ViewScene> view = load_view(folder / name, true, {});
+    const Result<ViewScene> view = load_view(folder / name, {}, {});
     ASSERT_TRUE(view.ok()) << view.status().message();
+    ASSERT_EQ(view->unlit, Unlit::all) << name;
     for (const Shading shading : {Shading::unlit, Shading::lambert}) {
       options.shading = shading;
       options.intensity = 0;  // the pages' own light alone

@@ -107,6 +107,81 @@ TEST(Render, SixHundredFramesOfEverythingWithoutAnError) {
   EXPECT_EQ(gl.debug_errors(), 0) << gl.first_debug_error();
 }
 
+// Returns the share of pixels whose visibility differs by more than a half from a map's that is as
+// fine as the picture.
+double wrong_shadows(const Scene& scene, const Camera& camera, double view_distance) {
+  RenderOptions o = small();
+  o.shadows = ShadowMethod::classic;
+  o.show_visibility = true;
+  o.map_resolution = 1024;
+  o.fit_view = true;
+  o.view_distance = view_distance;
+  Renderer r = must_render(scene, o);
+  EXPECT_TRUE(r.draw(camera, still({-1, 1, 1})).ok());
+  const Image8 image = r.read_image();
+  o.fit_view = false;
+  Renderer truth = must_render(courtyard(), o);
+  EXPECT_TRUE(truth.draw(camera, still({-1, 1, 1})).ok());
+  const Image8 wanted = truth.read_image();
+  int wrong = 0;
+  for (std::size_t i = 0; i < image.texels.size(); i += 3)
+    wrong += std::abs(image.texels[i] - wanted.texels[i]) > 127;
+  return wrong / (double(image.width) * image.height);
+}
+
+// In the yard alone a quarter of the diagonal cut off what is in view, and on big ground, it was
+// kilometres.
+TEST(Render, ShadowsReachWhereTheDetailIs) {
+  Scene yard = courtyard();
+  Camera camera = courtyard_view().camera;
+  EXPECT_LT(wrong_shadows(yard, camera, 0), 0.01);
+  EXPECT_GT(wrong_shadows(yard, camera, 1), 0.02) << "the test sees shadows that are cut off";
+  const float g = 5000;
+  add_quad(yard, {{-g, -0.01f, g}, {g, -0.01f, g}, {g, -0.01f, -g}, {-g, -0.01f, -g}});
+  EXPECT_LT(wrong_shadows(yard, camera, 0), 0.02);
+  RenderOptions o = small();
+  Renderer r = must_render(yard, o);
+  const MapReach all = *r.map_reach(camera, {-1, 1, 1});
+  EXPECT_EQ(all.distance, 0);
+  EXPECT_GT(all.texel, 2 * g / o.map_resolution);
+  o.fit_view = true;
+  ASSERT_TRUE(r.set_options(o).ok());
+  const MapReach near = *r.map_reach(camera, {-1, 1, 1});
+  EXPECT_GT(near.distance, 10);
+  EXPECT_LT(near.distance, 25);
+  EXPECT_LT(near.texel, 0.3);
+  o.shadows = ShadowMethod::none;
+  ASSERT_TRUE(r.set_options(o).ok());
+  EXPECT_EQ(r.map_reach(camera, {-1, 1, 1})->texel, 0);
+}
+
+// A visitor stands near the corner of 20 km of ground, two metres before a pillar.
+TEST(Render, NearThingsAreSeenOnBigGround) {
+  Scene s;
+  const float g = 10000;
+  add_quad(s, {{-g, 0, g}, {g, 0, g}, {g, 0, -g}, {-g, 0, -g}});
+  add_box(s, {9899.9f, 0, 9897.9f}, {9900.1f, 3, 9898.1f});
+  s.materials.push_back({"pillar", {1, 0, 0}});
+  std::fill(s.triangle_material.begin() + 2, s.triangle_material.end(), 1u);
+  Camera camera;
+  camera.eye = {9902, 1.6, 9899.8};
+  camera.target = {9900, 1.4, 9898};
+  RenderOptions o = small();
+  o.background = {0, 0, 1};
+  for (const Shading shading : {Shading::unlit, Shading::lambert}) {
+    o.shading = shading;
+    Renderer r = must_render(s, o);
+    fit_planes(camera, r.bounds());
+    ASSERT_TRUE(r.draw(camera, still({1, 1, 0.9})).ok());
+    const Image8 image = r.read_image();
+    const std::uint8_t* pillar = image.at(image.width / 2, image.height / 2);
+    EXPECT_GT(pillar[0], 100);
+    EXPECT_EQ(pillar[1], 0) << "the ground behind the pillar";
+    for (int x = 0; x < image.width; ++x)
+      EXPECT_GT(*image.at(x, 0), 100) << "the ground at the feet, " << x;
+  }
+}
+
 // What a pass has not finished writing must not be read by the next one.
 TEST(Render, FramesOfOneViewAreTheSame) {
   const View view = courtyard_view();

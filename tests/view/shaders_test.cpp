@@ -57,6 +57,19 @@ TEST(Shaders, NothingIsCompiledThatIsNotUsed) {
         }
 }
 
+// Only scenes of both kinds tell their materials apart, and the second pass then leaves some alone.
+TEST(Shaders, UnlitMaterialsAreToldApartOnlyWhereTheyDiffer) {
+  ShaderFeatures f;
+  f.textured = true;
+  for (const bool some : {false, true}) {
+    f.some_unlit = some;
+    const ShaderText t = shader_text(f);
+    EXPECT_EQ(has(t.vertex, "in vec4 colour"), some);
+    EXPECT_EQ(has(t.fragment, "bool unlit"), some);
+    EXPECT_EQ(has(t.lighting_fragment, "surface.x).x < 0.0"), some);
+  }
+}
+
 TEST(Shaders, VisibilityNeedsNoColours) {
   ShaderFeatures f;
   f.visibility = true;

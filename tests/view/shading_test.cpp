@@ -151,7 +151,130 @@ TEST_F(Plane, TexturesReflectOrShine) {
   Result<Renderer> r = Renderer::make(view, options_);
   ASSERT_TRUE(r.ok());
   ASSERT_TRUE(r->draw(camera_, still({0, 1, 0})).ok());
-  EXPECT_NEAR(*r->read_image().at(32, 32), encoded(0.2158), 1.5);
+  EXPECT_NEAR(*r->read_image().at(32, 32), encoded(0.6 * 0.2158), 1.5);
+}
+
+// KHR_materials_unlit: the colour is the factor times the texture.
+TEST_F(Plane, UnlitMaterialsShowTheirColourTimesTheirTexture) {
+  Scene plain = scene_;
+  plain.materials[0].unlit = true;
+  Scene textured = plain;
+  textured.textures.resize(1);
+  textured.textures[0].image = Image8(4, 4, 3, 128);  // 0.2158 linear
+  textured.materials[0].texture = 0;
+  textured.texcoords = {{0, 0}};
+  textured.texcoord_indices.assign(textured.indices.size(), 0);
+  // The other material of these scenes is out of view, so they are mixed.
+  const auto mixed = [](Scene s) {
+    add_quad(s, {{50, 0, 4}, {51, 0, 4}, {51, 0, 3}, {50, 0, 3}});
+    s.materials.push_back(s.materials[0]);
+    s.materials[1].unlit = false;
+    std::fill_n(s.triangle_material.rbegin(), 2, 1u);
+    if (s.textured()) s.texcoord_indices.resize(s.indices.size(), 0);
+    return s;
+  };
+  for (const Shading shading : {Shading::unlit, Shading::lambert, Shading::ward}) {
+    options_.shading = shading;
+    scene_ = mixed(plain);
+    EXPECT_NEAR(middle({0, 1, 0})[0], encoded(0.6), 1.5) << name_of(shading);
+    scene_ = mixed(textured);
+    EXPECT_NEAR(middle({0, 1, 0})[0], encoded(0.6 * 0.2158), 1.5) << name_of(shading);
+    add_box(scene_, {-1, 1, -1}, {1, 1.1f, 1});  // shades the middle, unlit likewise
+    scene_.texcoord_indices.resize(scene_.indices.size(), 0);
+    camera_.eye = {3, 0.8, 2.4};
+    EXPECT_NEAR(middle({0, 1, 0})[0], encoded(0.6 * 0.2158), 1.5) << name_of(shading);
+    camera_.eye = {1, 3, 2};
+  }
+  // Where all is unlit, a sun that is asked for falls on the colours without their textures.
+  options_.shading = Shading::lambert;
+  scene_ = textured;
+  EXPECT_NEAR(middle({0, 1, 0})[0], encoded(0.6 * (0.2158 + options_.intensity)), 1.5);
+  options_.shading = Shading::unlit;
+  EXPECT_NEAR(middle({0, 1, 0})[1], encoded(0.4 * 0.2158), 1.5);
+  scene_ = plain;
+  EXPECT_NEAR(middle({0, 1, 0})[1], encoded(0.4), 1.5);
+}
+
+// A cover over the floor, of a material of its own that the test sets.
+class Cover : public Plane {
+ protected:
+  Cover() {
+    add_quad(scene_, {{-2, 1, 2}, {2, 1, 2}, {2, 1, -2}, {-2, 1, -2}});
+    scene_.materials.push_back({"cover", {0, 0, 0}});
+    std::fill_n(scene_.triangle_material.rbegin(), 2, 1u);
+    Texture t;
+    t.image = Image8(4, 4, 4, 255);
+    for (int y = 0; y < 4; ++y)
+      for (int x = 0; x < 4; ++x) t.image.at(x, y)[3] = 100;
+    scene_.textures.push_back(t);
+    scene_.texcoords = {{0.5f, 0.5f}};
+    scene_.texcoord_indices.assign(scene_.indices.size(), 0);
+  }
+  Material& cover() { return scene_.materials[1]; }
+  // The floor's light under the cover, seen from beside it; for both methods that cast shadows.
+  double floor_light() {
+    camera_.eye = {3.5, 0.5, 0};
+    options_.shading = Shading::lambert;
+    return shown();
+  }
+  int shown() {
+    options_.shadows = ShadowMethod::classic;
+    const int one = middle({0, 1, 0})[0];
+    options_.shadows = ShadowMethod::linear;
+    EXPECT_EQ(middle({0, 1, 0})[0], one) << "maps in slices";
+    return one;
+  }
+  double lit() const { return encoded(0.6 * (options_.ambient + options_.intensity)); }
+  double shaded() const { return encoded(0.6 * options_.ambient); }
+  // Whether the cover is seen from above: it is black, the floor is not.
+  bool seen_from_above(Shading shading) {
+    camera_.eye = {0.1, 4, 0};
+    options_.shading = shading;
+    return middle({1, 0.2, 0})[0] == 0;
+  }
+};
+
+TEST_F(Cover, HolesOfAMaskAreSeenThroughAndLitThrough) {
+  cover().texture = 0;  // alpha is 100 / 255
+  EXPECT_NEAR(floor_light(), shaded(), 1.5) << "alpha means nothing";
+  cover().alpha_mode = AlphaMode::mask;
+  struct Case {
+    float opacity, cutoff;
+    bool hole;
+  };
+  for (const Case& c : {Case{1, 0.5f, true},
+                        {1, 0.39f, false},
+                        {0.9f, 0.39f, true},
+                        {0, 0.5f, true},
+                        {1, 0, false},
+                        {1, 1.5f, true}}) {
+    cover().opacity = c.opacity;
+    cover().alpha_cutoff = c.cutoff;
+    EXPECT_NEAR(floor_light(), c.hole ? lit() : shaded(), 1.5) << c.opacity << ' ' << c.cutoff;
+    for (const Shading shading : {Shading::unlit, Shading::lambert})
+      EXPECT_EQ(seen_from_above(shading), !c.hole) << c.opacity << ' ' << c.cutoff;
+    options_.show_visibility = true;
+    EXPECT_NEAR(floor_light(), c.hole ? 255 : 0, 1) << c.opacity << ' ' << c.cutoff;
+    options_.show_visibility = false;
+  }
+}
+
+TEST_F(Cover, AMaskWithoutATextureIsAllThereOrNotAtAll) {
+  cover().alpha_mode = AlphaMode::mask;
+  for (const float opacity : {0.4f, 0.6f}) {
+    cover().opacity = opacity;
+    EXPECT_NEAR(floor_light(), opacity < 0.5f ? lit() : shaded(), 1.5);
+    EXPECT_EQ(seen_from_above(Shading::lambert), opacity > 0.5f);
+  }
+}
+
+TEST_F(Cover, PanesAreOpaqueAndClearOnesCastNoShadow) {
+  cover().alpha_mode = AlphaMode::blend;
+  for (const float opacity : {0.05f, 0.6f}) {
+    cover().opacity = opacity;
+    EXPECT_NEAR(floor_light(), opacity < 0.5f ? lit() : shaded(), 1.5);
+    EXPECT_TRUE(seen_from_above(Shading::lambert));
+  }
 }
 
 TEST_F(Plane, TexturesGoOnBeyondTheirEdgesAsMaterialsSay) {
@@ -206,6 +329,7 @@ TEST_F(Plane, ChartsOfAPageDoNotMixFarAway) {
 // Dark values matter most: there a power of 1 / 2.2 differs most from sRGB.
 TEST_F(Plane, BakedPagesAreShownAsTheyAreStored) {
   scene_.materials[0].texture = 0;
+  scene_.materials[0].diffuse = {1, 1, 1};
   scene_.texcoords = {{0, 0}};
   scene_.texcoord_indices.assign(scene_.indices.size(), 0);
   test_context();

@@ -213,6 +213,51 @@ TEST(ViewScene, OnlyOnBakedPagesMaterialsAreOneSided) {
   }
 }
 
+// Light at the vertices falls on what reflects it, and not on pages; the scale is that of all.
+TEST(ViewScene, UnlitMaterialsAreToldApart) {
+  Scene s;
+  add_quad(s, {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}});
+  s.materials.resize(2, s.materials[0]);
+  s.materials[1].texture = 0;
+  s.materials[1].wrap_u = s.materials[1].wrap_v = TextureWrap::clamp;
+  s.materials[1].unlit = true;
+  s.triangle_material = {1, 0};
+  s.textures.resize(1);
+  s.textures[0].image = Image8(2, 2, 3, 128);
+  s.texcoords = {{0.25f, 0.75f}};
+  s.texcoord_indices.assign(6, 0);
+  s.illumination.assign(6, Vec3f{4, 4, 4});
+  const ViewScene v = *make_view_scene(s, {});
+  EXPECT_EQ(v.unlit, Unlit::some);
+  EXPECT_FALSE(v.clusters[0].look.page);
+  EXPECT_TRUE(v.clusters[1].look.page);
+  EXPECT_EQ(v.unlit_vertices, (std::vector<std::uint8_t>{0, 0, 0, 1, 1, 1}));
+  EXPECT_EQ(v.light_scale, 0.25);
+  for (const Vec3f& light : v.illumination) EXPECT_EQ(light, (Vec3f{4, 4, 4}));
+  s.illumination.assign(6, Vec3f{0, 0, 0});
+  const ViewScene dark = *make_view_scene(s, {});
+  for (std::size_t i = 0; i < 6; ++i)
+    EXPECT_EQ(dark.illumination[i].x, float(v.unlit_vertices[i])) << i;
+  s.materials[0].unlit = true;
+  EXPECT_EQ(make_view_scene(s, {})->unlit, Unlit::all);
+  EXPECT_TRUE(make_view_scene(s, {})->unlit_vertices.empty());
+  ViewSceneOptions colours;
+  colours.textures_hold_light = false;
+  EXPECT_EQ(make_view_scene(s, colours)->unlit, Unlit::none);
+}
+
+TEST(ViewScene, WhatIsInvisibleIsNotDrawn) {
+  Scene s = room();
+  s.materials[0].alpha_mode = AlphaMode::mask;
+  s.materials[0].opacity = 0.25f;
+  EXPECT_EQ(make_view_scene(s, {}).status().code(), ErrorCode::bad_input);
+  s.materials[0].alpha_mode = AlphaMode::blend;
+  const ViewScene glass = *make_view_scene(s, {});
+  EXPECT_EQ(glass.triangle_count(), s.triangle_count());
+  EXPECT_TRUE(glass.caster_indices.empty());
+  EXPECT_EQ(glass.bounds.high, make_view_scene(room(), {})->bounds.high);
+}
+
 TEST(ViewScene, ClustersLieCloseTogetherAlongEveryAxis) {
   for (int axis = 0; axis < 3; ++axis) {
     Scene s;
@@ -242,7 +287,7 @@ TEST(ViewScene, IsWhereAndWhatTheSceneSays) {
   EXPECT_EQ(v.origin, s.origin);
   EXPECT_EQ(v.metres_per_unit, 0.25);
   EXPECT_EQ(v.clusters.size(), s.triangle_count());
-  EXPECT_FALSE(v.textures_hold_light) << "there are none";
+  EXPECT_EQ(v.unlit, Unlit::none) << "there are no textures";
   EXPECT_FALSE(v.baked());
 }
 

@@ -203,6 +203,56 @@ TEST_F(AtlasPlay, TheBenchMeasuresWhatItIsAsked) {
   EXPECT_EQ(times.output.find("| march | 2 |"), std::string::npos) << times.output;
 }
 
+TEST_F(AtlasPlay, FramesOfAnEarlierRecordingAreNamed) {
+  const std::string command =
+      "roof.obj --headless --software --width 8 --height 8 --map 32 --record film --frames ";
+  EXPECT_EQ(run(command + "5").output.find("earlier"), std::string::npos);
+  const RunResult r = run(command + "2");
+  EXPECT_EQ(r.exit_code, 0) << r.errors;
+  EXPECT_NE(
+      r.output.find("film/frame00002.png to frame00004.png: of an earlier recording with more "
+                    "frames, no part of this one (may be removed)"),
+      std::string::npos)
+      << r.output;
+  EXPECT_TRUE(fs::exists(dir_ / "film" / "frame00004.png"));
+}
+
+TEST_F(AtlasPlay, TheStartTellsHowFarShadowsReach) {
+  const std::string command = "roof.obj --plan --software --map 64 ";
+  EXPECT_NE(run(command).output.find("shadows reach everywhere; a map's texel is 0."),
+            std::string::npos);
+  EXPECT_NE(run(command + "--fit-view --view-distance 2.5")
+                .output.find("shadows reach 2.5 units from the camera (--view-distance)"),
+            std::string::npos);
+  EXPECT_EQ(run(command + "--shading unlit").output.find("shadows reach"), std::string::npos);
+}
+
+// The page is dark, so a sun on it would be seen.
+TEST_F(AtlasPlay, NoSunFallsOnAWorldUnlessOneIsAskedFor) {
+  std::ofstream(dir_ / "page.ppm") << "P3\n1 1\n255\n40 60 90\n";
+  std::ofstream(dir_ / "world.wrl")
+      << "#VRML V2.0 utf8\nShape {\n  appearance Appearance { texture ImageTexture { url "
+         "\"page.ppm\" } }\n  geometry IndexedFaceSet {\n    coord Coordinate { point [ -1 0 -1, "
+         "1 0 -1, 0 0 1 ] }\n    coordIndex [ 2, 1, 0, -1 ]\n    texCoord TextureCoordinate { "
+         "point [ 0 0, 1 0, 0 1 ] }\n    texCoordIndex [ 0, 1, 2, -1 ]\n  }\n}\n";
+  const auto picture = [&](const std::string& options) {
+    const RunResult r = run(
+        "world.wrl --headless --software --width 16 --height 12 --map 32 --camera '0,3,0.1;0,0,0' "
+        "--screenshot p.png " +
+        options);
+    EXPECT_EQ(r.exit_code, 0) << r.errors;
+    EXPECT_EQ(r.output.find("no sun: ") != std::string::npos, options.empty()) << r.output;
+    return text_of(dir_ / "p.png");
+  };
+  const std::string stored = picture("--shading unlit");
+  EXPECT_EQ(picture(""), stored);
+  const std::string sunny = picture("--shading lambert");
+  EXPECT_NE(sunny, stored);
+  for (const char* options : {"--sun 0.9", "--light sun:172,50.45,9", "--shadows march"})
+    EXPECT_EQ(picture(options), sunny) << options;
+  EXPECT_NE(picture("--visibility"), stored);
+}
+
 TEST_F(AtlasPlay, ThePlanNamesWhatIsNotCompiled) {
   const RunResult r = run("roof.obj --plan --software --shading unlit");
   EXPECT_EQ(r.exit_code, 0) << r.errors;

@@ -85,6 +85,12 @@ TEST(PlayOptions, OfThePicture) {
                                       {"lambert", Shading::lambert},
                                       {"blinn-phong", Shading::blinn_phong}})
     EXPECT_EQ(good({"--shading", name}).render.shading, shading);
+  EXPECT_FALSE(good({"--quantity", "illuminance"}).colours);
+  EXPECT_TRUE(good({"--quantity", "colour"}).colours);
+  EXPECT_FALSE(good({"--headless", "--up", "z"}).sun_asked);
+  for (const char* option :
+       {"--shading=unlit", "--sun=1", "--light=fixed:0,1,0", "--shadows=none", "--visibility"})
+    EXPECT_TRUE(good({option}).sun_asked) << option;
   EXPECT_EQ(good({}).baked_textures, std::nullopt);
   EXPECT_EQ(good({"--baked-textures"}).baked_textures, true);
   EXPECT_EQ(good({"--no-baked-textures"}).baked_textures, false);
