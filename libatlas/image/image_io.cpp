@@ -81,6 +81,13 @@ struct Module {
 
 Module failure() {
   const char* reason = dlerror();
+  // What the loader says if memory is limited.
+  const std::string_view said = reason ? reason : "";
+  for (const std::string_view short_of_memory :
+       {"failed to map segment", "annot allocate memory", "cannot map"}) {
+    if (said.find(short_of_memory) == std::string_view::npos) continue;
+    return {nullptr, fmt::format("not enough memory to load {} ({})", LIBATLAS_IMAGE_MODULE, said)};
+  }
   return {nullptr,
           fmt::format("image files need {}, which belongs beside the program or into its ../{}: {}",
                       LIBATLAS_IMAGE_MODULE, LIBATLAS_LIBRARY_FOLDER, reason ? reason : "damaged")};
