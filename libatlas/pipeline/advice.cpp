@@ -43,10 +43,10 @@ std::string on_small_charts(const ExportReport& report, double texels_a_chart) {
 // Returns whether the number of charts grows with that of the triangles because single vertices
 // exceed the bound. On balls of 49,000 and 197,000 triangles, scan noise of 15 % of the edges has
 // no peaks, and 4 charts are enough; noise of 20 % has them at 0.012 and 0.023 % of the vertices,
-// and they take 31 and 119 charts.
+// and they take 20 and 63 charts.
 bool shattered_by_noise(const ExportReport& report, const ExportOptions& options) {
   constexpr double kPeaks = 0.0001;
-  constexpr std::size_t kManyCharts = 64, kChartsAPeak = 8;
+  constexpr std::size_t kManyCharts = 48, kChartsAPeak = 8;
   const auto peaks = report.noise.peaks;
   return options.charts.cone_degrees == 0 && report.charts.size() >= kManyCharts &&
          double(peaks) > kPeaks * double(report.noise.vertices) &&

@@ -288,7 +288,7 @@ TEST(Advice, NoiseThatShattersChartsIsNamed) {
   };
   EXPECT_TRUE(silent([](ExportReport& r) { r.noise = {}; }));
   EXPECT_TRUE(silent([](ExportReport& r) { r.noise.vertices = 700000; }));
-  EXPECT_TRUE(silent([](ExportReport& r) { r.charts.resize(63); }));
+  EXPECT_TRUE(silent([](ExportReport& r) { r.charts.resize(47); }));
   EXPECT_TRUE(silent([](ExportReport& r) { r.noise = {10000, 10}; }));
   ExportOptions options;
   options.charts.cone_degrees = 30;  // needs many charts in any case
