@@ -121,7 +121,7 @@ class ManyCharts {
     return make_pieces(outlines, piece_options(own_factors), context_);
   }
 
-  // Packs all charts at this scale into a strip as wide as the page.
+  // Packs all charts at this scale into strips as wide as a page.
   ManyLayout lay_out(double scale) const {
     ManyLayout layout;
     layout.scale = scale;
@@ -168,14 +168,12 @@ class ManyCharts {
   // fewest cells so far. Sets the height of the highest strip.
   std::vector<PagePlace> fill_pages(std::span<const Piece> pieces, ManyLayout& layout) const {
     std::vector<NestPlan> plans(options_.pages);
-    std::vector<std::int64_t> load(options_.pages);
     std::vector<PagePlace> places(pieces.size());
-    NestPlan all = plan_by_size(pieces);
+    const NestPlan all = plan_by_size(pieces);
+    const std::vector<std::uint32_t> pages = deal_out(pieces, all.order, options_.pages);
     for (const std::uint32_t i : all.order) {
-      const auto least = std::min_element(load.begin(), load.end());
-      places[i].page = static_cast<std::uint32_t>(least - load.begin());
-      plans[places[i].page].order.push_back(i);
-      *least += pieces[i].cells();
+      places[i].page = pages[i];
+      plans[pages[i]].order.push_back(i);
     }
     const std::int32_t longest = longest_run(pieces);
     std::vector<std::int32_t> heights(options_.pages);

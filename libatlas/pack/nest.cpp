@@ -4,9 +4,12 @@
 #include <array>
 #include <bit>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <numbers>
 #include <numeric>
+#include <queue>
+#include <utility>
 
 #include "libatlas/core/parallel.h"
 
@@ -137,6 +140,21 @@ NestPlan plan_by_size(std::span<const Piece> pieces, LargestBy by) {
                    [&](std::uint32_t a, std::uint32_t b) { return sizes[a] > sizes[b]; });
   plan.direction.assign(pieces.size(), kFree);
   return plan;
+}
+
+std::vector<std::uint32_t> deal_out(std::span<const Piece> pieces,
+                                    std::span<const std::uint32_t> order, std::uint32_t pages) {
+  using Load = std::pair<std::int64_t, std::uint32_t>;  // in cells, of a page
+  std::priority_queue<Load, std::vector<Load>, std::greater<>> loads;
+  for (std::uint32_t p = 0; p < pages; ++p) loads.emplace(0, p);
+  std::vector<std::uint32_t> page_of(pieces.size());
+  for (const std::uint32_t i : order) {
+    const auto [load, page] = loads.top();
+    loads.pop();
+    page_of[i] = page;
+    loads.emplace(load + pieces[i].cells(), page);
+  }
+  return page_of;
 }
 
 namespace {

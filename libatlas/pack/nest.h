@@ -71,6 +71,11 @@ struct NestPlan {
 enum class LargestBy : std::uint8_t { cells, boxes };
 NestPlan plan_by_size(std::span<const Piece> pieces, LargestBy by = LargestBy::cells);
 
+// Assigns the pieces to pages, in this order, each to the page whose pieces have the fewest cells
+// so far. Returns one page per piece.
+std::vector<std::uint32_t> deal_out(std::span<const Piece> pieces,
+                                    std::span<const std::uint32_t> order, std::uint32_t pages);
+
 struct NestPlace {
   bool placed = false;
   std::uint32_t direction = 0;

@@ -2,9 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 #include <numeric>
-#include <queue>
 #include <utility>
 
 #include "libatlas/core/parallel.h"
@@ -102,7 +100,7 @@ bool OutlineFit::pack_at(double scale, std::uint32_t pages, OutlineLayout& layou
     if (pages == 1) return false;
     groups_fail_at_ = scale;
   }
-  deal_out(pages, layout);
+  layout.page = deal_out(layout.pieces, plan_by_size(layout.pieces).order, pages);
   return pack_pages(pages, layout);
 }
 
@@ -141,18 +139,6 @@ void OutlineFit::prepare(double scale, OutlineLayout& layout) const {
   piece_options.directions = grid_.directions;
   piece_options.page = {side_, side_};
   layout.pieces = make_pieces(outlines_, piece_options, context_);
-}
-
-void OutlineFit::deal_out(std::uint32_t pages, OutlineLayout& layout) const {
-  using Load = std::pair<std::int64_t, std::uint32_t>;  // in cells, of a page
-  std::priority_queue<Load, std::vector<Load>, std::greater<>> loads;
-  for (std::uint32_t p = 0; p < pages; ++p) loads.emplace(0, p);
-  for (const std::uint32_t i : plan_by_size(layout.pieces).order) {
-    const auto [load, page] = loads.top();
-    loads.pop();
-    layout.page[i] = page;
-    loads.emplace(load + layout.pieces[i].cells(), page);
-  }
 }
 
 bool OutlineFit::pack_pages(std::uint32_t pages, OutlineLayout& layout) const {

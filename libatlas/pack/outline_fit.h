@@ -62,10 +62,6 @@ class OutlineFit {
   // Rasterises the pieces.
   void prepare(double scale, OutlineLayout& layout) const;
 
-  // Assigns the charts to pages, largest first, each to the page whose charts have the fewest cells
-  // so far.
-  void deal_out(std::uint32_t pages, OutlineLayout& layout) const;
-
   // Packs every page with the charts that layout.page assigns to it. The charts that find no room
   // move to other pages.
   bool pack_pages(std::uint32_t pages, OutlineLayout& layout) const;
