@@ -242,6 +242,7 @@ class GltfParser {
     int values = gltf_attribute(raw.attributes, "_ILLUMINANCE");
     if (values < 0) values = gltf_attribute(raw.attributes, "COLOR_0");
     builder_.illumination.resize(base + count, {NAN, NAN, NAN});
+    if (builder_.wants_rest) builder_.vertex_opacity.resize(base + count, 1);
     if (values < 0) return added;
     auto light = gltf_floats(model_, values, 3);
     if (!light.ok()) return malformed(where, light.status().message());
@@ -251,7 +252,17 @@ class GltfParser {
     for (std::size_t i = 0; i < count; ++i) builder_.illumination[base + i] = three(*light, i);
     lit_ranges_.emplace_back(base, base + count);
     coloured_ += count;
+    if (Status s = add_opacity(values, base, count); !s.ok()) return malformed(where, s.message());
     return added;
+  }
+
+  // Takes alpha of the vertices' colours, if they are of four components.
+  Status add_opacity(int colours, std::size_t base, std::size_t count) {
+    if (!builder_.wants_rest || model_.accessors[colours].type != TINYGLTF_TYPE_VEC4) return {};
+    const auto rgba = gltf_floats(model_, colours, 4);
+    if (!rgba.ok()) return rgba.status();
+    for (std::size_t i = 0; i < count; ++i) builder_.vertex_opacity[base + i] = (*rgba)[4 * i + 3];
+    return {};
   }
 
   Status add_texcoords(const tinygltf::Primitive& raw, Primitive& primitive) {

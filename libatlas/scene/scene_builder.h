@@ -64,8 +64,9 @@ class SceneBuilder {
   std::string file;               // for messages
   std::string illumination_file;  // for messages, if the illumination is another file's
   std::vector<Vec3d> positions;
-  std::vector<Vec3f> illumination;  // empty or 1 per vertex; checked by finish()
-  bool linear_light = false;        // whether the format says that the illumination is linear
+  std::vector<Vec3f> illumination;    // empty or 1 per vertex; checked by finish()
+  std::vector<float> vertex_opacity;  // empty or 1 per vertex; only filled if wants_rest is set
+  bool linear_light = false;          // whether the format says that the illumination is linear
   std::vector<Vec2f> texcoords;
   std::vector<Vec3f> normals;  // of any length; only filled if wants_normals is set
   std::vector<RawMaterial> materials;
@@ -181,6 +182,7 @@ class SceneBuilder {
   }
 
   void sanitise_values();
+  void sanitise_opacity();
   void decode_colours();
   Status place_positions(Scene& scene);
   void keep_used(Scene& scene);
