@@ -8,6 +8,7 @@
 #include "libatlas/core/glm_bridge.h"
 #include "libatlas/scene/formats.h"
 #include "libatlas/scene/gltf_check.h"
+#include "libatlas/scene/gltf_colours.h"
 #include "libatlas/scene/gltf_file.h"
 #include "libatlas/scene/gltf_instances.h"
 #include "libatlas/scene/gltf_losses.h"
@@ -27,10 +28,6 @@ constexpr std::size_t kMaxVisits = std::size_t{1} << 20;
 // Limit on vertices plus corners, some ten gigabytes. Meshes count as often as they are shown: a
 // file of a few kilobytes can ask for a million times as much as it holds.
 constexpr double kMaxShown = double(1 << 29);
-
-Vec3f three(const std::vector<float>& values, std::size_t i) {
-  return {values[3 * i], values[3 * i + 1], values[3 * i + 2]};
-}
 
 // Converts to floats, and normalises a vector that a node's scale has made too long or short.
 Vec3f direction(const glm::dvec3& v) {
@@ -222,6 +219,8 @@ class GltfParser {
         at->second = *added;
       }
       primitive.vertices = at->second;
+      if (const RawMaterial& m = builder_.materials[primitive.material]; m.unlit && m.texture >= 0)
+        add_gltf_unlit_colours(model_, raw, {at->second.first, at->second.count}, builder_);
       if (Status s = add_texcoords(raw, primitive); !s.ok()) return s;
       if (Status s = add_corners(raw, mode, primitive); !s.ok()) return s;
       primitives_.push_back(std::move(primitive));
@@ -238,31 +237,13 @@ class GltfParser {
     for (const glm::dvec3& p : posed->positions) builder_.positions.push_back(from_glm(p));
     const Vertices added{base, count, builder_.normals.size(), !posed->normals.empty()};
     for (const glm::dvec3& n : posed->normals) builder_.normals.push_back(direction(n));
-    builder_.linear_light = true;
-    int values = gltf_attribute(raw.attributes, "_ILLUMINANCE");
-    if (values < 0) values = gltf_attribute(raw.attributes, "COLOR_0");
-    builder_.illumination.resize(base + count, {NAN, NAN, NAN});
-    if (builder_.wants_rest) builder_.vertex_opacity.resize(base + count, 1);
-    if (values < 0) return added;
-    auto light = gltf_floats(model_, values, 3);
-    if (!light.ok()) return malformed(where, light.status().message());
-    if (light->size() != 3 * count) {
-      return malformed(where, "has another number of colours than of positions");
+    const auto lit = add_gltf_light(model_, raw, {base, count}, builder_);
+    if (!lit.ok()) return malformed(where, lit.status().message());
+    if (*lit) {
+      lit_ranges_.emplace_back(base, base + count);
+      coloured_ += count;
     }
-    for (std::size_t i = 0; i < count; ++i) builder_.illumination[base + i] = three(*light, i);
-    lit_ranges_.emplace_back(base, base + count);
-    coloured_ += count;
-    if (Status s = add_opacity(values, base, count); !s.ok()) return malformed(where, s.message());
     return added;
-  }
-
-  // Takes alpha of the vertices' colours, if they are of four components.
-  Status add_opacity(int colours, std::size_t base, std::size_t count) {
-    if (!builder_.wants_rest || model_.accessors[colours].type != TINYGLTF_TYPE_VEC4) return {};
-    const auto rgba = gltf_floats(model_, colours, 4);
-    if (!rgba.ok()) return rgba.status();
-    for (std::size_t i = 0; i < count; ++i) builder_.vertex_opacity[base + i] = (*rgba)[4 * i + 3];
-    return {};
   }
 
   Status add_texcoords(const tinygltf::Primitive& raw, Primitive& primitive) {

@@ -83,6 +83,9 @@ struct Scene {
   // Alpha of the vertices' colours, 0..1 per vertex; empty if all is 1, or it is not asked for
   // (ReadOptions::rest). Exports that keep the scene pass it on. Lighting ignores it.
   std::vector<float> vertex_opacity = {};
+  // What multiplies the textures of unlit materials, linear RGB, 0..1 per vertex: COLOR_0 of glTF,
+  // which is the illumination of other materials. Empty if all is 1. Lighting ignores it.
+  std::vector<Vec3f> unlit_colours = {};
   std::vector<Vec2f> texcoords = {};        // finite; may lie outside [0, 1]
   std::vector<std::uint32_t> indices = {};  // 3 per triangle, into positions
   // 3 per triangle, into texcoords, or kNoTexcoord if the file gives none there; empty if no

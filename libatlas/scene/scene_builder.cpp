@@ -306,6 +306,8 @@ Result<LoadedScene> SceneBuilder::finish(const ReadOptions& options, const Conte
   scene.triangle_material = std::move(triangle_material_);
   scene.triangle_object = std::move(triangle_object_);
   scene.illumination = std::move(illumination);
+  if (!unlit_colours.empty()) unlit_colours.resize(scene.positions.size(), {1, 1, 1});
+  scene.unlit_colours = std::move(unlit_colours);
   scene.vertex_opacity = std::move(vertex_opacity);
   loaded.defects = std::move(defects);
   if (context.cancelled()) return Status::cancelled();

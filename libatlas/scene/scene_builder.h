@@ -66,6 +66,7 @@ class SceneBuilder {
   std::vector<Vec3d> positions;
   std::vector<Vec3f> illumination;    // empty or 1 per vertex; checked by finish()
   std::vector<float> vertex_opacity;  // empty or 1 per vertex; only filled if wants_rest is set
+  std::vector<Vec3f> unlit_colours;   // Scene::unlit_colours, for the first vertices or all
   bool linear_light = false;          // whether the format says that the illumination is linear
   std::vector<Vec2f> texcoords;
   std::vector<Vec3f> normals;  // of any length; only filled if wants_normals is set
