@@ -29,6 +29,9 @@ constexpr std::size_t kMaxVisits = std::size_t{1} << 20;
 // file of a few kilobytes can ask for a million times as much as it holds.
 constexpr double kMaxShown = double(1 << 29);
 
+// The sets of uvs among which the new ones of a kept scene are looked for.
+constexpr int kMostUvSets = 16;
+
 // Converts to floats, and normalises a vector that a node's scale has made too long or short.
 Vec3f direction(const glm::dvec3& v) {
   const double length = glm::length(v);
@@ -246,10 +249,30 @@ class GltfParser {
     return added;
   }
 
+  // Returns the set whose page is that of the primitive's uvs. In kept scenes, sets that a
+  // primitive lacks refer to the data of the new uvs, and only the set of these has its page told.
+  int page_set(const tinygltf::Primitive& raw, std::uint32_t material) const {
+    const RawMaterial& m = builder_.materials[material];
+    const int uvs = gltf_attribute(raw.attributes, fmt::format("TEXCOORD_{}", m.uv_set));
+    const auto told = [&](int set) { return builder_.uv_pages.aspect_of(m.name, set) > 0; };
+    if (told(m.uv_set)) return m.uv_set;
+    for (int set = 0; set < kMostUvSets; ++set)
+      if (told(set) && gltf_attribute(raw.attributes, fmt::format("TEXCOORD_{}", set)) == uvs)
+        return set;
+    return m.uv_set;
+  }
+
+  // If primitives of one material differ, the page of some of them is not told.
+  static void take_page_set(int set, RawMaterial& material) {
+    const bool agrees = material.page_set < 0 || material.page_set == set;
+    material.page_set = agrees ? set : material.uv_set;
+  }
+
   Status add_texcoords(const tinygltf::Primitive& raw, Primitive& primitive) {
     const int set = builder_.materials[primitive.material].uv_set;
     const int accessor = gltf_attribute(raw.attributes, fmt::format("TEXCOORD_{}", set));
     if (accessor < 0) return {};
+    take_page_set(page_set(raw, primitive.material), builder_.materials[primitive.material]);
     const auto [at, is_new] = texcoords_.try_emplace(accessor);
     if (is_new) {
       auto uvs = gltf_floats(model_, accessor, 2);

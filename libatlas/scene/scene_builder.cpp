@@ -256,7 +256,8 @@ void SceneBuilder::place_materials(const ReadOptions& options, Scene& scene) {
 
 void SceneBuilder::place_uv_aspects(LoadedScene& loaded) const {
   std::vector<double> aspects;
-  for (const RawMaterial& m : materials) aspects.push_back(uv_pages.aspect_of(m.name, m.uv_set));
+  for (const RawMaterial& m : materials)
+    aspects.push_back(uv_pages.aspect_of(m.name, m.page_set < 0 ? m.uv_set : m.page_set));
   if (aspects.empty()) aspects.push_back(uv_pages.aspect_of({}));
   loaded.uv_aspect = aspects[0];
   if (std::all_of(aspects.begin(), aspects.end(), [&](double a) { return a == aspects[0]; }))

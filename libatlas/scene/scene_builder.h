@@ -34,6 +34,9 @@ struct RawMaterial : Material {
   // for u and v.
   std::array<double, 3> uv_u{1, 0, 0}, uv_v{0, 1, 0};
   int uv_set = 0;  // which of the file's sets of texture coordinates they are
+  // The set whose page is that of all these texture coordinates, which may be another one that
+  // refers to the same data; -1: uv_set.
+  int page_set = -1;
 
   bool moves_uv() const {
     return uv_u != std::array<double, 3>{1, 0, 0} || uv_v != std::array<double, 3>{0, 1, 0};
