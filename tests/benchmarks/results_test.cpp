@@ -186,6 +186,64 @@ TEST(Compare, SeesMissingFailedAndBrokenRows) {
   EXPECT_EQ(found[3].kind, Regression::failed);
 }
 
+// Returns the regressions if one value of a row changes from `base` to `head`.
+std::vector<Regression> changed(const char* stage, const char* name, double base, double head) {
+  Results before;
+  before.rows.push_back(row(1000, 1, 5));
+  before.rows[0].stage = stage;
+  before.rows[0].values = {{name, base}};
+  Results after = before;
+  after.rows[0].values.back().second = head;
+  return compare(before, after, {});
+}
+
+TEST(Compare, LooksAtEveryValueThatHasABetterWay) {
+  EXPECT_EQ(changed("charts", "flips", 0, 1).size(), 1u);
+  EXPECT_EQ(changed("unwrap", "without_uv", 0, 5000).size(), 1u);
+  EXPECT_EQ(changed("unwrap", "util", 0.75, 0.5).size(), 1u);
+  EXPECT_EQ(changed("unwrap", "util", 0.5, 0.75).size(), 0u);
+  EXPECT_EQ(changed("export", "psnr", 50, 40).size(), 1u);
+  EXPECT_EQ(changed("export", "psnr", 50, 60).size(), 0u);
+  EXPECT_EQ(changed("unwrap", "p999", 1.10, 1.11).size(), 1u) << "a tenth more than perfection";
+  EXPECT_EQ(changed("baking", "p999", 0.100, 0.101).size(), 0u) << "a hundredth more error";
+  EXPECT_EQ(changed("shadows", "ssim", 0.995, 0.990).size(), 1u) << "twice as far from equal";
+  EXPECT_EQ(changed("charts", "solve_cpu", 1, 9).size(), 0u);
+  EXPECT_EQ(changed("light_leak", "edge_m", 1, 9).size(), 0u);
+  const std::vector<Regression> found = changed("charts", "l2", 1.0010, 1.0020);
+  ASSERT_EQ(found.size(), 1u);
+  EXPECT_EQ(found[0].kind, Regression::quality);
+  EXPECT_EQ(found[0].what, "charts | sphere:1000 | standard: l2 1.001 -> 1.002");
+}
+
+TEST(Compare, SeesMoreChartsAndTriangles) {
+  Results base;
+  base.rows.push_back(row(1000, 1, 5));
+  base.rows[0].size_out = 10;
+  Results head = base;
+  head.rows[0].size_out = 12;
+  const std::vector<Regression> found = compare(base, head, {});
+  ASSERT_EQ(found.size(), 1u);
+  EXPECT_EQ(found[0].what, "charts | sphere:1000 | standard: charts 10 -> 12");
+  EXPECT_TRUE(compare(head, base, {}).empty());
+  base.rows[0].stage = head.rows[0].stage = "baseline";
+  EXPECT_TRUE(compare(base, head, {}).empty());
+}
+
+// A value whose better way nobody stated would never be compared.
+TEST(Compare, KnowsEveryPublishedValue) {
+  std::size_t rows = 0;
+  for (const auto& entry : fs::directory_iterator(ATLAS_PUBLISHED_RESULTS)) {
+    const Result<Results> results = load(entry.path());
+    ASSERT_TRUE(results.ok()) << results.status().message();
+    for (const Row& r : results->rows) {
+      ++rows;
+      for (const auto& [name, value] : r.values)
+        EXPECT_NE(better_of(name), Better::unknown) << r.key() << ": " << name;
+    }
+  }
+  EXPECT_GT(rows, 100u);
+}
+
 TEST(Pareto, KeepsWhatNothingBeats) {
   using Point = std::pair<double, double>;
   const auto x = [](const Point& p) { return p.first; };
