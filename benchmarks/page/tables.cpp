@@ -286,8 +286,8 @@ void rivals_table(const Results& all, Document& page) {
       cells.push_back(fmt::format("{:.2f}", row.wall_seconds));
       for (const std::string& name : names) cells.push_back(figure(row.value(name)));
     } else {
-      cells.insert(cells.end(), {row.failure, fmt::format("{:.2f}", row.cpu_seconds),
-                                 fmt::format("{:.2f}", row.wall_seconds)});
+      // The CPU time of processes that a timeout ended is not known.
+      cells.insert(cells.end(), {row.failure, "", fmt::format("{:.2f}", row.wall_seconds)});
     }
     cells.resize(header.size() - 1);
     cells.push_back(row.source);
@@ -298,7 +298,10 @@ void rivals_table(const Results& all, Document& page) {
   page.paragraph(
       "The same OBJ file for every program, everything judged by the same evaluator "
       "(tests/support/atlas_measure) on pages of the size that its program made. Reading and "
-      "writing files is part of the time. See benchmarks/rivals/README.md for how each is called.");
+      "writing files is part of the time. The others are programs that are started, and stopped at "
+      "a "
+      "timeout; libatlas is called as a library. See benchmarks/rivals/README.md for how each is "
+      "called.");
   page.table(header, rows);
 }
 
