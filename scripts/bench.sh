@@ -39,7 +39,7 @@ run() {
 if [ "$size" = small ]; then
   sweep="cabin:20000 scan:20000"; budget="--atlases 2 --atlas-size 1024"; repeats=1
   sizes="cabin:40000 scan:40000 cabin:20000"; sizes_budget="$budget"
-  components="assembly:10000 assembly:40000"
+  components="assembly:10000 assembly:40000 rough:10000 rough:30000"
   threads="scan:40000"; counted="scan:5000"
   rivals="sphere:20000 assembly:20000"; small_rivals="sphere:2000"
   leak="cabin:50000"; texels="20 10 5"; full=""; shadows="--small"
@@ -48,6 +48,7 @@ else
   sizes="cabin:10000 cabin:300000 cabin:1000000 cabin:3000000 scan:30000 scan:300000 scan:1000000"
   sizes_budget="--atlases 50"
   components="assembly:30000 assembly:300000 assembly:1000000 soup:30000 soup:300000"
+  components="$components rough:30000 rough:100000 rough:300000"
   threads="cabin:300000"; counted="scan:5000"
   rivals="sphere:100000 assembly:100000 genus:100000 scan:1000000 terrain:1000000 assembly:1000000"
   small_rivals="sphere:5000 assembly:5000 genus:5000"
