@@ -73,6 +73,8 @@ std::pair<const Row*, const Row*> largest_exports(const Results& all) {
 std::string figure(double value) {
   if (std::isfinite(value) && std::abs(value) >= 1000 && std::abs(value) < 1e12)
     return fmt::format("{:.0f}", value);
+  // Stretches begin at 1: what tells settings apart are the digits behind it.
+  if (value > 1 && value < 2) return fmt::format("{:.4f}", value);
   return fmt::format("{:.4g}", value);
 }
 

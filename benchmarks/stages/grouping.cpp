@@ -1,5 +1,5 @@
-#include "benchmarks/support/staged.h"
 #include "libatlas/pack/grouping.h"
+#include "benchmarks/support/staged.h"
 
 namespace atlas::bench {
 
