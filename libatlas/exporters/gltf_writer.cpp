@@ -10,6 +10,7 @@
 #include "libatlas/exporters/page_sides.h"
 #include "libatlas/exporters/scene_writers.h"
 #include "libatlas/exporters/unify_vertices.h"
+#include "libatlas/exporters/visitor.h"
 #include "libatlas/exporters/world.h"
 #include "libatlas/scene/file_bytes.h"
 #include "libatlas/scene/scene.h"
@@ -58,9 +59,13 @@ class PagesWriter {
     const glm::dvec3 eye = turn(to_glm(world_.origin) + to_glm(view.position)) * scale;
     json camera = {{"name", "start"}, {"camera", 0}, {"translation", array(eye)}};
     camera["rotation"] = camera_rotation(turn(to_glm(view.direction)));
+    // From outside, a near plane as near as inside would leave the depth buffer of a large world
+    // with steps of metres.
+    const Visitor visitor = visitor_of(world_);
+    const double far = 4 * std::max(visitor.farthest, 1e-6) * scale;
+    const double near = visitor.outside ? visitor.near_plane() * scale : std::min(0.02, far * 1e-4);
     // zfar is optional by the standard, but Castle Game Engine insists on it.
-    const double far = 4 * farthest() * scale;
-    const json lens = {{"yfov", view.fov}, {"znear", std::min(0.02, far * 1e-4)}, {"zfar", far}};
+    const json lens = {{"yfov", view.fov}, {"znear", near}, {"zfar", far}};
     json& file = document_.json;
     file["cameras"] = json::array({{{"type", "perspective"}, {"perspective", lens}}});
     file["nodes"] = json::array({gltf_root(world_), camera});
@@ -73,16 +78,6 @@ class PagesWriter {
   }
 
  private:
-  // Returns the distance from the viewpoint to the farthest position, in scene units.
-  double farthest() const {
-    const glm::dvec3 eye = to_glm(world_.viewpoint.position);
-    double farthest = 1e-6;
-    for (const Vec3f& p : world_.positions) {
-      farthest = std::max(farthest, glm::distance(eye, to_dvec(p)));
-    }
-    return farthest;
-  }
-
   // Returns a primitive that has no material yet.
   json add_side(const PageSides::Side& side, WorldFile& result) {
     const auto unified = unify_vertices<2>(side.indices.size(), [&](std::size_t k) {

@@ -105,7 +105,7 @@ TEST(NearPlane, ObjectsOfAnySizeLieBehindIt) {
       const Extent extent = extent_of(world);
       const Lens lens = lens_of(world);
       ASSERT_EQ(lens.avatar.size(), 3u);
-      for (const double near : {kCastle * lens.avatar[0]}) {
+      for (const double near : {lens.near, kCastle * lens.avatar[0]}) {
         EXPECT_LT(10 * near, extent.nearest) << size;
         // A step of 24 bits of depth, at the far side.
         const double step = extent.farthest * extent.farthest / near / std::exp2(24);
@@ -165,6 +165,7 @@ TEST(NearPlane, ViewpointsOnASurfaceHaveOne) {
     world.viewpoint = {eye, {0, 1, 0}, 1, false};
     const Lens lens = lens_of(world);
     for (const double length : lens.avatar) EXPECT_GT(length, 1e-5);
+    EXPECT_GT(lens.near, 1e-6);
   }
 }
 
