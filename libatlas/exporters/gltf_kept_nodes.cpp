@@ -169,10 +169,7 @@ void place_kept_meshes(const World& world, const std::vector<std::size_t>& meshe
     nodes.push_back({{"mesh", meshes[i]}});
   }
   if (world.up != Up::y || world.metres_per_unit != 1) {
-    World turned;  // coordinates are the file's own, without an origin
-    turned.up = world.up;
-    turned.metres_per_unit = world.metres_per_unit;
-    json top = gltf_root(turned);
+    json top = gltf_root(world, {});  // coordinates are the file's own, without an origin
     top["children"] = std::exchange(roots, json::array({nodes.size()}));
     nodes.push_back(std::move(top));
   }

@@ -57,31 +57,31 @@ double drop_to(const glm::dvec3& p, const Triangle& t, const glm::dvec3& up) {
   return -height / sum;
 }
 
-// What surrounds the viewpoint.
-struct Surroundings {
-  Bounds<glm::dvec3> box;
+// Calls `visit` with each triangle.
+template <class Visit>
+void for_triangles(const World& world, const Visit& visit) {
+  for (const Page& page : world.pages) {
+    const auto corner = [&](std::size_t i) { return to_dvec(world.positions[page.indices[i]]); };
+    for (std::size_t k = 0; k < page.indices.size(); k += 3)
+      visit(Triangle{corner(k), corner(k + 1), corner(k + 2)});
+  }
+}
+
+// The free space around a viewpoint. Infinite without triangles.
+struct Room {
   double nearest = std::numeric_limits<double>::infinity();  // triangle
   double floor = std::numeric_limits<double>::infinity();    // straight below
-  double farthest = 0;                                       // corner
 };
 
-Surroundings surroundings_of(const World& world) {
+Room room_of(const World& world) {
   const glm::dvec3 eye = to_glm(world.viewpoint.position);
   const glm::dvec3 up = world.up == Up::z ? glm::dvec3(0, 0, 1) : glm::dvec3(0, 1, 0);
-  Surroundings result;
-  for (const Page& page : world.pages) {
-    for (std::size_t k = 0; k < page.indices.size(); k += 3) {
-      const auto corner = [&](std::size_t i) { return to_dvec(world.positions[page.indices[i]]); };
-      const Triangle t{corner(k), corner(k + 1), corner(k + 2)};
-      for (const glm::dvec3& p : {t.a, t.b, t.c}) {
-        result.box.add(p);
-        result.farthest = std::max(result.farthest, glm::distance(eye, p));
-      }
-      result.nearest = std::min(result.nearest, distance_to(eye, t));
-      result.floor = std::min(result.floor, drop_to(eye, t, up));
-    }
-  }
-  return result;
+  Room room;
+  for_triangles(world, [&](const Triangle& t) {
+    room.nearest = std::min(room.nearest, distance_to(eye, t));
+    room.floor = std::min(room.floor, drop_to(eye, t, up));
+  });
+  return room;
 }
 
 // Returns a person of this width.
@@ -94,24 +94,32 @@ Visitor scaled(double width) {
 
 Visitor visitor_of(const World& world) {
   const glm::dvec3 eye = to_glm(world.viewpoint.position);
-  const Surroundings around = surroundings_of(world);
+  Bounds<glm::dvec3> box;
+  double farthest = 0;
+  for_triangles(world, [&](const Triangle& t) {
+    for (const glm::dvec3& p : {t.a, t.b, t.c}) {
+      box.add(p);
+      farthest = std::max(farthest, glm::distance(eye, p));
+    }
+  });
   const Visitor person = scaled(std::clamp(kWidthMetres / world.metres_per_unit, 1e-200, 1e200));
-  if (!std::isfinite(around.nearest)) return person;  // a world without triangles
-  const double least = kLeastRoom * glm::length(around.box.size());
-  const double outside = glm::distance(eye, glm::clamp(eye, around.box.low, around.box.high));
+  if (box.low.x > box.high.x) return person;  // a world without triangles
+  const double least = kLeastRoom * glm::length(box.size());
+  const double outside = glm::distance(eye, glm::clamp(eye, box.low, box.high));
+  Visitor visitor;
   if (outside > 0) {
-    Visitor visitor = scaled(kOutsideShare * std::max(outside, least));
+    visitor = scaled(kOutsideShare * std::max(outside, least));
     visitor.outside = true;
-    visitor.farthest = around.farthest;
-    return visitor;
+  } else {
+    const Room room = room_of(world);
+    const double nearest = std::max(room.nearest, least);
+    visitor = scaled(std::min(person.width, kInsideShare * nearest));
+    if (std::isfinite(room.floor)) {
+      const double scale = std::min(1.0, std::max(room.floor, nearest) / person.height);
+      visitor = {visitor.width, scale * person.height, scale * person.step, scale * person.speed};
+    }
   }
-  const double room = std::max(around.nearest, least);
-  Visitor visitor = scaled(std::min(person.width, kInsideShare * room));
-  if (std::isfinite(around.floor)) {
-    const double scale = std::min(1.0, std::max(around.floor, room) / person.height);
-    visitor = {visitor.width, scale * person.height, scale * person.step, scale * person.speed};
-  }
-  visitor.farthest = around.farthest;
+  visitor.farthest = farthest;
   return visitor;
 }
 

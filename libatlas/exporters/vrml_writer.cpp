@@ -9,6 +9,7 @@
 #include "libatlas/core/glm_bridge.h"
 #include "libatlas/exporters/camera.h"
 #include "libatlas/exporters/compact_page.h"
+#include "libatlas/exporters/far_origin.h"
 #include "libatlas/exporters/page_sides.h"
 #include "libatlas/exporters/text_output.h"
 #include "libatlas/exporters/visitor.h"
@@ -29,24 +30,9 @@ std::string quoted(const std::string& text) {
   return result + '"';
 }
 
-// Viewers of VRML hold single floats. At a distance of so many world sizes from zero, floats keep
-// 17 bits of a position within the world; farther away, what is seen from near begins to shake and
-// to tear.
-constexpr double kFarSizes = 128;
-
 // X_ITE draws no farther than this, in units of the file, unless a world says how far it is seen.
 // The limit leaves room for walking away from it.
 constexpr double kUsualFar = 1e5, kFarFactor = 4;
-
-bool too_far_for_floats(const World& world) {
-  glm::dvec3 low(INFINITY), high(-INFINITY);
-  for (const Vec3f& p : world.positions) {
-    low = glm::min(low, glm::dvec3(to_glm(p)));
-    high = glm::max(high, glm::dvec3(to_glm(p)));
-  }
-  return !world.positions.empty() &&
-         glm::length(to_glm(world.origin)) > kFarSizes * glm::distance(low, high);
-}
 
 std::string note_of(const Vec3d& origin) {
   return fmt::format("origin {} {} {}: to be added to every coordinate", origin.x, origin.y,

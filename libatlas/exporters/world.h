@@ -67,6 +67,9 @@ struct WorldFile {
   std::string uv_set = {};
   // To be added to the written coordinates; zero except in VRML, see there.
   Vec3d origin_left_out = {};
+  // Only glTF: whether the world is so far from zero that a node of its own, kFarOriginNode, adds
+  // the origin.
+  bool far_origin = false;
 };
 
 // Writers check the world first (bad_input: an index out of range, a number that is not finite or
@@ -84,6 +87,8 @@ struct WorldFile {
 Result<WorldFile> write_vrml(const World& world, const std::filesystem::path& path,
                              AtomicFiles& files, const Context& context);
 
+inline constexpr const char* kFarOriginNode = "origin";
+
 // The line of WorldInfo that marks a world whose z axis points up; VRML itself has no property for
 // it.
 inline constexpr const char* kZUpNote = "the z axis points up";
@@ -99,7 +104,9 @@ Result<WorldFile> write_obj(const World& world, const std::filesystem::path& pat
 // Writes glTF 2.0: a .glb with everything embedded, or a .gltf with a .bin beside it. Materials
 // with an image are KHR_materials_unlit and double-sided, except for those of Page::one_sided,
 // which are primitives of their own; the root node turns the scene's up axis to +Y, scales to
-// metres and adds the origin, since glTF prescribes axis and unit.
+// metres and adds the origin, since glTF prescribes axis and unit. An origin farther from zero than
+// 128 times the world's size is added by a node above all others, kFarOriginNode: engines that hold
+// single floats need it moved to zero.
 //
 // If World::scene has a source (Scene::source), that file is written again: its nodes, materials,
 // attributes, skins and animations stay as they are. The new uvs are in World::uv_set, else in the
