@@ -59,8 +59,7 @@ Result<WorldFile> write_obj(const World& world, const fs::path& path, AtomicFile
   if (Status s = check_world(world); !s.ok()) return s;
   if (world.scene != nullptr) return write_obj_scene(world, path, files, context);
   WorldFile result;
-  fs::path mtl_path = path;
-  mtl_path.replace_extension(".mtl");
+  const fs::path mtl_path = safely_beside(path, ".mtl");
   TextFile mtl(files.path_for(mtl_path), mtl_path, false);
   for (std::size_t i = 0; i < world.pages.size(); ++i) {
     mtl.write(material_of(world.pages[i], i));

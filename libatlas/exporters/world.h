@@ -9,6 +9,7 @@
 
 #include "libatlas/core/atomic_file.h"
 #include "libatlas/core/context.h"
+#include "libatlas/core/safe_file_name.h"
 #include "libatlas/core/status.h"
 #include "libatlas/core/vec.h"
 
@@ -93,8 +94,9 @@ inline constexpr const char* kFarOriginNode = "origin";
 // it.
 inline constexpr const char* kZUpNote = "the z axis points up";
 
-// Writes a Wavefront OBJ file and, beside it, an MTL file of the same name with one material
-// `page<i>` per page. World::scene is written with its objects (`o`), materials (with unique names,
+// Writes a Wavefront OBJ file and, beside it, an MTL file (named by safely_beside()) with one
+// material `page<i>` per page; those with an image say that nothing lights them (`illum 0`).
+// World::scene is written with its objects (`o`), materials (with unique names,
 // Kd, and the other lines of their MTL), normals and light. The format has only one set of uvs,
 // which holds the new ones, so the scene's own are left out, and lines that name textures become
 // comments.
@@ -126,7 +128,7 @@ Result<WorldFile> write_gltf(const World& world, const std::filesystem::path& pa
                              AtomicFiles& files, const Context& context);
 
 // Calls the writer for the extension of `path`. check_world_extension() refuses extensions that
-// have no writer, and for OBJ names that contain line ends (bad_option).
+// have no writer (bad_option).
 Result<WorldFile> write_world(const World& world, const std::filesystem::path& path,
                               AtomicFiles& files, const Context& context);
 Status check_world_extension(const std::filesystem::path& path);
@@ -146,10 +148,6 @@ bool holds_viewpoint(const std::filesystem::path& path);
 
 // The check that all writers begin with.
 Status check_world(const World& world);
-
-// Returns a file name of letters, digits, '_', '-' and '.' only, which all viewers can load, made
-// from any text. Texts with other characters almost always get different names.
-std::string safe_file_name(const std::string& text);
 
 // Returns the file name of a page's image without its extension: world.wrl gives world_0, world_1,
 // ...
