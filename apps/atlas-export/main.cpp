@@ -105,7 +105,7 @@ std::vector<std::filesystem::path> images_there(const Scene& scene, const Export
 // formats.
 std::filesystem::path beside(const std::filesystem::path& target) {
   const std::string extension = lower_extension(target);
-  if (extension == ".obj") return std::filesystem::path(target).replace_extension("mtl");
+  if (extension == ".obj") return safely_beside(target, ".mtl");
   if (extension == ".gltf") return std::filesystem::path(target).replace_extension("bin");
   return {};
 }

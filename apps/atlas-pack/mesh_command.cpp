@@ -16,8 +16,8 @@
 #include "libatlas/core/atomic_file.h"
 #include "libatlas/core/counted.h"
 #include "libatlas/core/file_extension.h"
+#include "libatlas/core/safe_file_name.h"
 #include "libatlas/pack/fit.h"
-#include "libatlas/scene/obj_names.h"
 #include "libatlas/scene/reader.h"
 
 namespace atlas::app {
@@ -37,8 +37,8 @@ RepackedMesh repack(const Scene& scene, const UvCharts& charts, const FitResult&
   return mesh;
 }
 
-std::filesystem::path material_file(std::filesystem::path mesh) {
-  return mesh.replace_extension("mtl");
+std::filesystem::path material_file(const std::filesystem::path& mesh) {
+  return safely_beside(mesh, ".mtl");
 }
 
 Status write_mesh(const std::filesystem::path& target, const RepackedMesh& mesh,
@@ -238,7 +238,6 @@ Result<PackedAtlas> run_mesh(const PackCommand& c, const Context& context) {
   if (lower_extension(c.output) != ".obj")
     return Status(ErrorCode::bad_option,
                   fmt::format("{}: the target must end in .obj", c.output.string()));
-  if (Status s = check_obj_path(c.output); !s.ok()) return s;
   if (Status s = check_output(c.output, {c.input, c.preview}); !s.ok()) return s;
   if (Status s = check_output(material_file(c.output), {c.input, c.preview}); !s.ok()) return s;
   if (Status s = check_preview(c); !s.ok()) return s;

@@ -190,16 +190,25 @@ Status GltfDocument::write(const fs::path& path, AtomicFiles& files, WorldFile& 
 }
 
 // glTF is y-up and in metres.
-nlohmann::json gltf_root(const World& world) {
-  const bool z_up = world.up == Up::z;
-  const glm::dvec3 origin = to_glm(world.origin);
-  const glm::dvec3 move = (z_up ? z_up_to_y_up(origin) : origin) * world.metres_per_unit;
+nlohmann::json gltf_position(const World& world, const Vec3d& position) {
+  const glm::dvec3 p = to_glm(position);
+  const glm::dvec3 moved = (world.up == Up::z ? z_up_to_y_up(p) : p) * world.metres_per_unit;
+  return {moved.x, moved.y, moved.z};
+}
+
+nlohmann::json gltf_root(const World& world, const Vec3d& origin) {
   const double scale = world.metres_per_unit;
   nlohmann::json root = {{"name", "world"}, {"children", nlohmann::json::array()}};
-  root["translation"] = {move.x, move.y, move.z};
-  if (z_up) root["rotation"] = {-std::sqrt(0.5), 0, 0, std::sqrt(0.5)};
+  root["translation"] = gltf_position(world, origin);
+  if (world.up == Up::z) root["rotation"] = {-std::sqrt(0.5), 0, 0, std::sqrt(0.5)};
   root["scale"] = {scale, scale, scale};
   return root;
+}
+
+nlohmann::json gltf_far_origin(const World& world, nlohmann::json children) {
+  return {{"name", kFarOriginNode},
+          {"translation", gltf_position(world, world.origin)},
+          {"children", std::move(children)}};
 }
 
 }  // namespace atlas

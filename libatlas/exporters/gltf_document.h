@@ -67,8 +67,16 @@ class GltfDocument {
   std::string bytes_;
 };
 
+// Returns a position of the world's coordinates, in metres and y-up.
+nlohmann::json gltf_position(const World& world, const Vec3d& position);
+
 // Returns the node, still without children, that turns the world's up axis to +Y, scales to metres
-// and adds the origin.
-nlohmann::json gltf_root(const World& world);
+// and adds `origin`, which is in the world's coordinates.
+nlohmann::json gltf_root(const World& world, const Vec3d& origin);
+
+// Returns the node that adds the origin of a world that is too far from zero for floats to all root
+// nodes, which are its children. Engines that hold single floats show such a world if this one
+// node is moved to zero.
+nlohmann::json gltf_far_origin(const World& world, nlohmann::json children);
 
 }  // namespace atlas

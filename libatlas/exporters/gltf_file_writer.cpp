@@ -12,6 +12,7 @@
 #include "libatlas/exporters/gltf_kept_materials.h"
 #include "libatlas/exporters/gltf_kept_nodes.h"
 #include "libatlas/exporters/gltf_kept_rest.h"
+#include "libatlas/exporters/gltf_kept_unit.h"
 #include "libatlas/exporters/scene_writers.h"
 #include "libatlas/exporters/unify_vertices.h"
 
@@ -84,6 +85,8 @@ class FileWriter {
     }
     document_.json["meshes"] = std::move(meshes);
     place_kept_meshes(world_, numbers, document_.json, losses_);
+    if (world_.metres_per_unit != 1)
+      scale_kept_lengths(world_.metres_per_unit, document_.json, losses_);
     drop_empty_meshes(document_.json, losses_);
     keep_rest(source_, data_, document_.json, losses_);
     name_asset();

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <optional>
+#include <set>
 #include <string>
 #include <utility>
 
@@ -120,6 +121,28 @@ class Walk {
   std::size_t visits_ = 0, next_ = 0;
 };
 
+// Divides root nodes: those that shall be scaled and turned, and skinned meshes. These have the
+// places of their joints, whatever their own nodes do, and viewers warn of them below another node.
+struct Roots {
+  json moved = json::array(), skinned = json::array();
+};
+
+Roots divide_roots(const GltfSource& source, const json& nodes, const json& roots) {
+  std::set<std::size_t> joints;
+  for (const tinygltf::Skin& skin : source.model.skins)
+    for (const int joint : skin.joints) joints.insert(static_cast<std::size_t>(joint));
+  Roots result;
+  for (const json& root : roots) {
+    const auto number = root.get<std::size_t>();
+    const json& node = nodes[number];
+    const bool moves_other_things = node.contains("children") || node.contains("camera") ||
+                                    node.contains("extensions") || joints.contains(number);
+    const bool skinned = node.contains("mesh") && node.contains("skin") && !moves_other_things;
+    (skinned ? result.skinned : result.moved).push_back(root);
+  }
+  return result;
+}
+
 // Makes `roots` the root nodes of the scene that readers show.
 void set_roots(const GltfSource& source, json roots, json& document) {
   json& scenes = document["scenes"];
@@ -169,12 +192,14 @@ void place_kept_meshes(const World& world, const std::vector<std::size_t>& meshe
     nodes.push_back({{"mesh", meshes[i]}});
   }
   if (world.up != Up::y || world.metres_per_unit != 1) {
-    World turned;  // coordinates are the file's own, without an origin
-    turned.up = world.up;
-    turned.metres_per_unit = world.metres_per_unit;
-    json top = gltf_root(turned);
-    top["children"] = std::exchange(roots, json::array({nodes.size()}));
-    nodes.push_back(std::move(top));
+    json top = gltf_root(world, {});  // coordinates are the file's own, without an origin
+    Roots divided = divide_roots(source, nodes, roots);
+    roots = std::move(divided.skinned);
+    if (!divided.moved.empty()) {
+      top["children"] = std::move(divided.moved);
+      roots.insert(roots.begin(), nodes.size());
+      nodes.push_back(std::move(top));
+    }
   }
   set_roots(source, std::move(roots), document);
 }

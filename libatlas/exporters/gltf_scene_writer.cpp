@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "libatlas/core/file_extension.h"
+#include "libatlas/exporters/far_origin.h"
 #include "libatlas/exporters/gltf_document.h"
 #include "libatlas/exporters/gltf_textures.h"
 #include "libatlas/exporters/scene_parts.h"
@@ -185,8 +186,9 @@ class SceneWriter {
 
   // Adds the nodes; to be called when all meshes are known. If up axis, unit and origin are as glTF
   // requires, no node above the objects is needed.
-  void add_nodes() {
+  void add_nodes(WorldFile& result) {
     json& file = document_.json;
+    result.far_origin = too_far_for_floats(world_);
     const bool as_is =
         world_.up == Up::y && world_.metres_per_unit == 1 && world_.origin == Vec3d{};
     const std::size_t first = as_is ? 0 : 1;
@@ -194,13 +196,17 @@ class SceneWriter {
     for (std::size_t i = 0; i < file["meshes"].size(); ++i) list.push_back(first + i);
     file["nodes"] = json::array();
     if (!as_is) {
-      file["nodes"].push_back(gltf_root(world_));
+      file["nodes"].push_back(gltf_root(world_, result.far_origin ? Vec3d{} : world_.origin));
       file["nodes"][0]["children"] = std::exchange(list, json::array({0}));
     }
     for (std::size_t i = 0; i < file["meshes"].size(); ++i) {
       json node = {{"mesh", i}};
       if (file["meshes"][i].contains("name")) node["name"] = file["meshes"][i]["name"];
       file["nodes"].push_back(std::move(node));
+    }
+    if (result.far_origin) {
+      const std::size_t above = file["nodes"].size();
+      file["nodes"].push_back(gltf_far_origin(world_, std::exchange(list, json::array({above}))));
     }
     file["scenes"] = json::array({{{"nodes", std::move(list)}}});
     file["scene"] = 0;
@@ -296,7 +302,7 @@ Result<WorldFile> write_gltf_scene(const World& world, const fs::path& path, Ato
     writer.add(parts[i], *material, result);
     context.report("writing the world", double(i + 1) / double(parts.size()));
   }
-  writer.add_nodes();
+  writer.add_nodes(result);
   result.uv_set = fmt::format("TEXCOORD_{}", writer.last_set());
   document.name_uv_sets(writer.new_sets());
   document.add_info("the new uvs: " + result.uv_set);

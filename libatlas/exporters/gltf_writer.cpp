@@ -2,14 +2,17 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <utility>
 
 #include "libatlas/core/file_extension.h"
 #include "libatlas/core/glm_bridge.h"
 #include "libatlas/exporters/camera.h"
+#include "libatlas/exporters/far_origin.h"
 #include "libatlas/exporters/gltf_document.h"
 #include "libatlas/exporters/page_sides.h"
 #include "libatlas/exporters/scene_writers.h"
 #include "libatlas/exporters/unify_vertices.h"
+#include "libatlas/exporters/visitor.h"
 #include "libatlas/exporters/world.h"
 #include "libatlas/scene/file_bytes.h"
 #include "libatlas/scene/scene.h"
@@ -20,10 +23,6 @@ using nlohmann::json;
 namespace {
 
 constexpr int kLinear = 9729, kLinearMipmapLinear = 9987, kClampToEdge = 33071;
-
-json array(const glm::dvec3& v) {
-  return {v.x, v.y, v.z};
-}
 
 class PagesWriter {
  public:
@@ -51,38 +50,39 @@ class PagesWriter {
   }
 
   // Adds the nodes and the camera; to be called when all meshes are known.
-  void add_scene() {
-    const auto turn = [&](const glm::dvec3& v) { return world_.up == Up::z ? z_up_to_y_up(v) : v; };
+  void add_scene(WorldFile& result) {
     const double scale = world_.metres_per_unit;
     const Viewpoint& view = world_.viewpoint;
-    const glm::dvec3 eye = turn(to_glm(world_.origin) + to_glm(view.position)) * scale;
-    json camera = {{"name", "start"}, {"camera", 0}, {"translation", array(eye)}};
-    camera["rotation"] = camera_rotation(turn(to_glm(view.direction)));
+    result.far_origin = too_far_for_floats(world_);
+    const Vec3d origin = result.far_origin ? Vec3d{} : world_.origin;
+    json camera = {{"name", "start"}, {"camera", 0}};
+    camera["translation"] = gltf_position(world_, from_glm(to_glm(origin) + to_glm(view.position)));
+    const glm::dvec3 direction = to_glm(view.direction);
+    camera["rotation"] = camera_rotation(world_.up == Up::z ? z_up_to_y_up(direction) : direction);
+    // From outside, a near plane as near as inside would leave the depth buffer of a large world
+    // with steps of metres.
+    const Visitor visitor = visitor_of(world_);
+    const double far = 4 * std::max(visitor.farthest, 1e-6) * scale;
+    const double near = visitor.outside ? visitor.near_plane() * scale : std::min(0.02, far * 1e-4);
     // zfar is optional by the standard, but Castle Game Engine insists on it.
-    const double far = 4 * farthest() * scale;
-    const json lens = {{"yfov", view.fov}, {"znear", std::min(0.02, far * 1e-4)}, {"zfar", far}};
+    const json lens = {{"yfov", view.fov}, {"znear", near}, {"zfar", far}};
     json& file = document_.json;
     file["cameras"] = json::array({{{"type", "perspective"}, {"perspective", lens}}});
-    file["nodes"] = json::array({gltf_root(world_), camera});
+    file["nodes"] = json::array({gltf_root(world_, origin), camera});
     for (std::size_t i = 0; i < file["meshes"].size(); ++i) {
       file["nodes"][0]["children"].push_back(i + 2);
       file["nodes"].push_back({{"name", file["meshes"][i]["name"]}, {"mesh", i}});
     }
-    file["scenes"] = json::array({{{"nodes", {0, 1}}}});
+    json roots = {0, 1};
+    if (result.far_origin) {
+      const std::size_t above = file["nodes"].size();
+      file["nodes"].push_back(gltf_far_origin(world_, std::exchange(roots, json::array({above}))));
+    }
+    file["scenes"] = json::array({{{"nodes", std::move(roots)}}});
     file["scene"] = 0;
   }
 
  private:
-  // Returns the distance from the viewpoint to the farthest position, in scene units.
-  double farthest() const {
-    const glm::dvec3 eye = to_glm(world_.viewpoint.position);
-    double farthest = 1e-6;
-    for (const Vec3f& p : world_.positions) {
-      farthest = std::max(farthest, glm::distance(eye, to_dvec(p)));
-    }
-    return farthest;
-  }
-
   // Returns a primitive that has no material yet.
   json add_side(const PageSides::Side& side, WorldFile& result) {
     const auto unified = unify_vertices<2>(side.indices.size(), [&](std::size_t k) {
@@ -166,7 +166,7 @@ Result<WorldFile> write_gltf(const World& world, const fs::path& path, AtomicFil
     return Status(ErrorCode::bad_input,
                   path.string() + ": a glTF world needs at least one triangle");
   }
-  writer.add_scene();
+  writer.add_scene(result);
   if (Status s = document.write(path, files, result); !s.ok()) return s;
   return result;
 }

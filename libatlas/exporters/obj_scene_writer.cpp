@@ -178,8 +178,7 @@ WorldFile write_parts(TextFile& file, const World& world, const std::vector<std:
 
 Result<WorldFile> write_obj_scene(const World& world, const fs::path& path, AtomicFiles& files,
                                   const Context& context) {
-  fs::path mtl_path = path;
-  mtl_path.replace_extension(".mtl");
+  const fs::path mtl_path = safely_beside(path, ".mtl");
   const std::vector<std::string> names = material_names(*world.scene);
   TextFile mtl(files.path_for(mtl_path), mtl_path, false);
   Losses losses;

@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <span>
+#include <string>
 
 #include "libatlas/exporters/compact_page.h"
 #include "libatlas/exporters/obj_text.h"
@@ -43,6 +44,14 @@ void write_geometry(TextFile& file, const World& world, WorldFile& result, const
   result.uvs = uvs.used.size();
 }
 
+// A page holds light: it is shown as it is, without highlights, which readers add unless they are
+// told not to.
+std::string material_of(const Page& page, std::size_t number) {
+  const std::string name = fmt::format("newmtl page{}\n", number);
+  if (page.image.empty()) return name + "Kd 1 1 1\n";
+  return name + "Ka 0 0 0\nKd 1 1 1\nKs 0 0 0\nillum 0\nmap_Kd " + page.image + "\n";
+}
+
 }  // namespace
 
 Result<WorldFile> write_obj(const World& world, const fs::path& path, AtomicFiles& files,
@@ -50,12 +59,10 @@ Result<WorldFile> write_obj(const World& world, const fs::path& path, AtomicFile
   if (Status s = check_world(world); !s.ok()) return s;
   if (world.scene != nullptr) return write_obj_scene(world, path, files, context);
   WorldFile result;
-  fs::path mtl_path = path;
-  mtl_path.replace_extension(".mtl");
+  const fs::path mtl_path = safely_beside(path, ".mtl");
   TextFile mtl(files.path_for(mtl_path), mtl_path, false);
   for (std::size_t i = 0; i < world.pages.size(); ++i) {
-    mtl.write(fmt::format("newmtl page{}\nKd 1 1 1\n", i));
-    if (!world.pages[i].image.empty()) mtl.write("map_Kd " + world.pages[i].image + "\n");
+    mtl.write(material_of(world.pages[i], i));
   }
   if (Status s = mtl.finish(); !s.ok()) return s;
   TextFile file(files.path_for(path), path, false);

@@ -9,8 +9,10 @@
 #include "libatlas/core/glm_bridge.h"
 #include "libatlas/exporters/camera.h"
 #include "libatlas/exporters/compact_page.h"
+#include "libatlas/exporters/far_origin.h"
 #include "libatlas/exporters/page_sides.h"
 #include "libatlas/exporters/text_output.h"
+#include "libatlas/exporters/visitor.h"
 #include "libatlas/exporters/world.h"
 
 namespace atlas {
@@ -28,20 +30,9 @@ std::string quoted(const std::string& text) {
   return result + '"';
 }
 
-// Viewers of VRML hold single floats. At a distance of so many world sizes from zero, floats keep
-// 17 bits of a position within the world; farther away, what is seen from near begins to shake and
-// to tear.
-constexpr double kFarSizes = 128;
-
-bool too_far_for_floats(const World& world) {
-  glm::dvec3 low(INFINITY), high(-INFINITY);
-  for (const Vec3f& p : world.positions) {
-    low = glm::min(low, glm::dvec3(to_glm(p)));
-    high = glm::max(high, glm::dvec3(to_glm(p)));
-  }
-  return !world.positions.empty() &&
-         glm::length(to_glm(world.origin)) > kFarSizes * glm::distance(low, high);
-}
+// X_ITE draws no farther than this, in units of the file, unless a world says how far it is seen.
+// The limit leaves room for walking away from it.
+constexpr double kUsualFar = 1e5, kFarFactor = 4;
 
 std::string note_of(const Vec3d& origin) {
   return fmt::format("origin {} {} {}: to be added to every coordinate", origin.x, origin.y,
@@ -83,18 +74,23 @@ std::string header(const World& world, const Vec3d& origin_left_out) {
   out.text(carries_light(world) ? "FALSE" : "TRUE");
   out.text("\n  type [ ");
   out.text(world.viewpoint.inside ? "\"WALK\", \"ANY\" ]\n" : "\"EXAMINE\", \"ANY\" ]\n");
-  // A person: 0.25 m wide, eyes at 1.6 m, stepping over 0.75 m, walking 1.5 m/s. However small or
-  // large the unit is, these must stay floats above 0.
-  const auto length = [&](double metres) {
-    return static_cast<float>(std::clamp(metres / world.metres_per_unit, 1e-30, 1e30));
+  // Viewers draw from half of the avatar's width on. However small or large the unit is, these
+  // lengths must stay floats above 0.
+  const Visitor visitor = visitor_of(world);
+  const auto number = [&](double length) {
+    out.number(static_cast<float>(std::clamp(length, 1e-30, 1e30)));
   };
   out.text("  avatarSize [ ");
-  for (const double metres : {0.25, 1.6, 0.75}) {
-    out.number(length(metres));
+  for (const double length : {visitor.width, visitor.height, visitor.step}) {
+    number(length);
     out.character(' ');
   }
   out.text("]\n  speed ");
-  out.number(length(1.5));
+  number(visitor.speed);
+  if (kFarFactor * visitor.farthest > kUsualFar) {
+    out.text("\n  visibilityLimit ");
+    number(kFarFactor * visitor.farthest);
+  }
   out.text("\n}\n");
   return out.bytes();
 }

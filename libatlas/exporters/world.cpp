@@ -7,7 +7,6 @@
 #include <string_view>
 
 #include "libatlas/core/is_finite.h"
-#include "libatlas/core/text_hash.h"
 #include "libatlas/exporters/text_output.h"
 #include "libatlas/scene/check_scene.h"
 
@@ -106,20 +105,6 @@ std::string encode_uri(const std::string& name) {
     result += plain ? std::string(1, c) : fmt::format("%{:02X}", static_cast<unsigned char>(c));
   }
   return result;
-}
-
-std::string safe_file_name(const std::string& text) {
-  std::string name = text;
-  for (char& c : name) {
-    const bool plain = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') ||
-                       c == '-' || c == '_' || (c == '.' && &c != name.data());
-    if (!plain) c = '_';
-  }
-  if (name.empty()) return "world";
-  if (name == text) return name;
-  // Without the hash, names in another script would all become the same row of '_'.
-  const std::uint32_t hash = text_hash(text);
-  return fmt::format("{}-{:04x}", name, (hash ^ (hash >> 16)) & 0xffff);
 }
 
 std::string page_name(const std::filesystem::path& target, std::size_t page) {

@@ -9,6 +9,7 @@
 
 #include "libatlas/core/atomic_file.h"
 #include "libatlas/core/context.h"
+#include "libatlas/core/safe_file_name.h"
 #include "libatlas/core/status.h"
 #include "libatlas/core/vec.h"
 
@@ -67,6 +68,9 @@ struct WorldFile {
   std::string uv_set = {};
   // To be added to the written coordinates; zero except in VRML, see there.
   Vec3d origin_left_out = {};
+  // Only glTF: whether the world is so far from zero that a node of its own, kFarOriginNode, adds
+  // the origin.
+  bool far_origin = false;
 };
 
 // Writers check the world first (bad_input: an index out of range, a number that is not finite or
@@ -84,12 +88,15 @@ struct WorldFile {
 Result<WorldFile> write_vrml(const World& world, const std::filesystem::path& path,
                              AtomicFiles& files, const Context& context);
 
+inline constexpr const char* kFarOriginNode = "origin";
+
 // The line of WorldInfo that marks a world whose z axis points up; VRML itself has no property for
 // it.
 inline constexpr const char* kZUpNote = "the z axis points up";
 
-// Writes a Wavefront OBJ file and, beside it, an MTL file of the same name with one material
-// `page<i>` per page. World::scene is written with its objects (`o`), materials (with unique names,
+// Writes a Wavefront OBJ file and, beside it, an MTL file (named by safely_beside()) with one
+// material `page<i>` per page; those with an image say that nothing lights them (`illum 0`).
+// World::scene is written with its objects (`o`), materials (with unique names,
 // Kd, and the other lines of their MTL), normals and light. The format has only one set of uvs,
 // which holds the new ones, so the scene's own are left out, and lines that name textures become
 // comments.
@@ -99,7 +106,9 @@ Result<WorldFile> write_obj(const World& world, const std::filesystem::path& pat
 // Writes glTF 2.0: a .glb with everything embedded, or a .gltf with a .bin beside it. Materials
 // with an image are KHR_materials_unlit and double-sided, except for those of Page::one_sided,
 // which are primitives of their own; the root node turns the scene's up axis to +Y, scales to
-// metres and adds the origin, since glTF prescribes axis and unit.
+// metres and adds the origin, since glTF prescribes axis and unit. An origin farther from zero than
+// 128 times the world's size is added by a node above all others, kFarOriginNode: engines that hold
+// single floats need it moved to zero.
 //
 // If World::scene has a source (Scene::source), that file is written again: its nodes, materials,
 // attributes, skins and animations stay as they are. The new uvs are in World::uv_set, else in the
@@ -119,7 +128,7 @@ Result<WorldFile> write_gltf(const World& world, const std::filesystem::path& pa
                              AtomicFiles& files, const Context& context);
 
 // Calls the writer for the extension of `path`. check_world_extension() refuses extensions that
-// have no writer, and for OBJ names that contain line ends (bad_option).
+// have no writer (bad_option).
 Result<WorldFile> write_world(const World& world, const std::filesystem::path& path,
                               AtomicFiles& files, const Context& context);
 Status check_world_extension(const std::filesystem::path& path);
@@ -139,10 +148,6 @@ bool holds_viewpoint(const std::filesystem::path& path);
 
 // The check that all writers begin with.
 Status check_world(const World& world);
-
-// Returns a file name of letters, digits, '_', '-' and '.' only, which all viewers can load, made
-// from any text. Texts with other characters almost always get different names.
-std::string safe_file_name(const std::string& text);
 
 // Returns the file name of a page's image without its extension: world.wrl gives world_0, world_1,
 // ...

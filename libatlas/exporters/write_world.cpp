@@ -6,7 +6,6 @@
 
 #include "libatlas/core/file_extension.h"
 #include "libatlas/exporters/world.h"
-#include "libatlas/scene/obj_names.h"
 
 namespace atlas {
 namespace {
@@ -38,8 +37,7 @@ const Format* format_of(const std::filesystem::path& path) {
 }  // namespace
 
 Status check_world_extension(const std::filesystem::path& path) {
-  if (const Format* format = format_of(path))
-    return format->write == write_obj ? check_obj_path(path) : Status();
+  if (format_of(path) != nullptr) return {};
   std::string names;
   for (std::size_t i = 0; i < kFormats.size(); ++i) {
     names += i == 0 ? "" : i + 1 == kFormats.size() ? " or " : ", ";

@@ -75,7 +75,8 @@ class Export {
     }
     if (Status s = write(); !s.ok()) return s;
     report_.carried_out = true;
-    report_.advice = advice_on(report_, options_);
+    for (std::string& line : advice_on(report_, options_))
+      report_.advice.push_back(std::move(line));
     if (plan_.bake) {
       for (std::string& line : advice_on_materials(scene_, options_.quantity))
         report_.advice.push_back(std::move(line));

@@ -70,6 +70,15 @@ Status commit_files(AtomicFiles& files, ExportReport& report, std::uint64_t& byt
   return {};
 }
 
+// Returns advice on a glTF world that floats cannot hold where it is.
+std::string on_far_origin(const World& world) {
+  return fmt::format(
+      "the world is placed at {} {} {} by its node '{}', which is too far for engines that hold "
+      "single floats: they show it torn, or nothing (move that node to 0 0 0 after loading; "
+      "Babylon.js has useLargeWorldRendering)",
+      world.origin.x, world.origin.y, world.origin.z, kFarOriginNode);
+}
+
 std::string writing_note(const ExportToWrite& made, const WorldFile& written) {
   const Vec3d& left_out = written.origin_left_out;
   if (made.options.keep_scene)
@@ -94,6 +103,7 @@ Result<StageOutcome> write_export(const ExportToWrite& made, AtomicFiles& files,
   Result<WorldFile> world_file = write_world(world, made.options.target, files, context);
   if (!world_file.ok()) return world_file.status();
   report.not_kept = world_file->not_kept;
+  if (world_file->far_origin) report.advice.push_back(on_far_origin(world));
   if (lower_extension(made.options.target) == ".glb") {  // embeds its images
     for (const auto& image : made.image_sources) files.discard(image);
     for (PageReport& page : report.pages) page.image.clear();

@@ -19,7 +19,8 @@ namespace {
 // Returns a keyword as the format spells it if it is read here: some programs write kd and map_kd.
 std::string_view spelled(std::string_view keyword) {
   const std::string wanted = small_letters(std::string(keyword));
-  for (const std::string_view known : {"newmtl", "Kd", "map_Kd", "d", "map_d", "Ke", "map_Ke"}) {
+  for (const std::string_view known :
+       {"newmtl", "Kd", "map_Kd", "d", "map_d", "Ke", "map_Ke", "illum"}) {
     if (small_letters(std::string(known)) == wanted) return known;
   }
   return keyword;
@@ -54,7 +55,11 @@ class MtlParser {
       builder_.materials.push_back({});
       builder_.materials.back().name = scan_.rest();
       inside_ = true;
-      emission_given_ = false;
+      emission_given_ = constant_ = false;
+      return {};
+    }
+    if (keyword == "illum") {
+      if (inside_) parse_illumination_model();
       return {};
     }
     if (keyword == "d") return parse_opacity();
@@ -113,6 +118,19 @@ class MtlParser {
     if (count == 1) c[1] = c[2] = c[0];
     material.emission = {float(c[0]), float(c[1]), float(c[2])};
     emission_given_ = true;
+  }
+
+  // Model 0 shows the colour as it is. A material without a texture is not taken as unlit: some
+  // programs write 0 for all they do not know.
+  void parse_illumination_model() {
+    double model = 0;
+    constant_ = scan_.number(model) && model == 0;
+    note_unlit();
+  }
+
+  void note_unlit() {
+    RawMaterial& material = builder_.materials.back();
+    material.unlit = constant_ && material.texture >= 0;
   }
 
   // Returns whether a colour is given as a curve (`spectral FILE`) or as CIE XYZ.
@@ -177,6 +195,7 @@ class MtlParser {
     }
     if (rest.empty() || rest[0] == '#') return malformed("map_Kd names no file");
     material.texture = builder_.texture_of(texture_file(rest), place());
+    note_unlit();
     return {};
   }
 
@@ -236,7 +255,8 @@ class MtlParser {
   SceneBuilder& builder_;
   std::uint32_t line_ = 1;
   bool inside_ = false;
-  bool emission_given_ = false;  // whether the current material has Ke
+  // Whether the current material has Ke, and illum 0.
+  bool emission_given_ = false, constant_ = false;
 };
 
 }  // namespace

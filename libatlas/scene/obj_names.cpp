@@ -22,15 +22,6 @@ std::string obj_name(const std::string& name) {
   return result.substr(first, result.find_last_not_of(" \t") + 1 - first);
 }
 
-Status check_obj_path(const std::filesystem::path& path) {
-  const std::string name = path.filename().string();
-  if (name.find_first_of("\n\r") == std::string::npos) return {};
-  return {ErrorCode::bad_option,
-          fmt::format("{}: OBJ cannot name files whose names contain line ends (give a name of one "
-                      "line)",
-                      path.string())};
-}
-
 std::string obj_object_line(const Scene& scene, std::uint32_t object) {
   const std::string name =
       object < scene.object_names.size() ? obj_name(scene.object_names[object]) : "";

@@ -2,10 +2,8 @@
 #pragma once
 
 #include <cstdint>
-#include <filesystem>
 #include <string>
 
-#include "libatlas/core/status.h"
 #include "libatlas/scene/scene.h"
 
 namespace atlas {
@@ -15,10 +13,6 @@ std::string one_line(std::string text);
 
 // Returns a name as OBJ can hold it: there, a name ends with its line, or at a '#' after a blank.
 std::string obj_name(const std::string& name);
-
-// Refuses names with line ends for an OBJ file: its MTL file and its images are called after it,
-// and OBJ names both in one line each. Errors: bad_option.
-Status check_obj_path(const std::filesystem::path& path);
 
 // Returns the line that begins an object. The first object may have no name, as in the scene's own
 // file; others without a name get one.

@@ -42,7 +42,7 @@ struct Material {
   float alpha_cutoff = 0.5f;  // the threshold of AlphaMode::mask, >= 0
   bool double_sided = true;   // visible from behind, too
   // What it shows is light already: neither light nor shadows change it (KHR_materials_unlit; VRML
-  // textures without a Material).
+  // textures without a Material; textures of an MTL with illum 0).
   bool unlit = false;
   // Emitted light, linear RGB >= 0 in an unknown unit. It is passed on likewise, and is not part of
   // what is baked. A texture of the emission is not read.

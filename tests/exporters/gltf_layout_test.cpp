@@ -111,20 +111,6 @@ TEST(GltfCamera, StandsAndLooksLikeTheViewpoint) {
   }
 }
 
-// Nobody's nose is cut off, and a world of a few micrometres is not cut away, either.
-TEST(GltfCamera, TheNearPlaneIsNear) {
-  const TempFolder folder;
-  World world = wavy_world(4, 1);
-  world.pages[0].image.clear();
-  for (const double metres : {1e-9, 1e-3, 1.0, 1e3}) {
-    world.metres_per_unit = metres;
-    const json lens = document_of(world, folder / "w.gltf")["cameras"][0]["perspective"];
-    EXPECT_GT(lens["znear"].get<double>(), 0) << metres;
-    EXPECT_LE(lens["znear"].get<double>(), 0.02) << metres;
-    EXPECT_LT(lens["znear"].get<double>(), 1e-3 * lens["zfar"].get<double>()) << metres;
-  }
-}
-
 // The format has no mesh without triangles, so later pages have other numbers than their meshes.
 TEST(GltfPages, WithoutTrianglesAreLeftOut) {
   const TempFolder folder;

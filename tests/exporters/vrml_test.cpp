@@ -175,8 +175,6 @@ TEST(Vrml, InfoAndNavigation) {
   ASSERT_EQ(navigation.size(), 1u);
   EXPECT_EQ(navigation[0]->field("headlight"), std::vector<std::string>{"FALSE"});
   EXPECT_EQ(navigation[0]->field("type")[0], "\"WALK\"");
-  EXPECT_EQ(numbers(navigation[0]->field("avatarSize")), (std::vector<double>{25, 160, 75}));
-  EXPECT_EQ(numbers(navigation[0]->field("speed")), std::vector<double>{150});  // 1.5 m/s
   world.viewpoint.inside = false;
   world.viewpoint.fov = 0.5;
   world.up = Up::z;

@@ -157,5 +157,23 @@ TEST(ExportStages, AnOriginThatIsLeftOutIsTold) {
   EXPECT_EQ(report->stages.back().quality, "relative to 500000 4000000 0");
 }
 
+// glTF holds it in doubles, but some engines do not.
+TEST(ExportStages, AnOriginTooFarForSomeEnginesIsTold) {
+  const TempFolder folder;
+  LoadedScene sheet = lit_scene(grid(2, 2));
+  for (const bool far : {false, true}) {
+    if (far) sheet.scene.origin = {500000, 4000000, 0};
+    for (const char* name : {"w.glb", "w.obj", "w.wrl"}) {
+      const auto report = export_world(sheet, small_pages(folder / name), {}, {});
+      ASSERT_TRUE(report.ok()) << report.status().message();
+      const bool told =
+          std::any_of(report->advice.begin(), report->advice.end(), [](const std::string& line) {
+            return line.find("500000 4000000 0 by its node 'origin'") != std::string::npos;
+          });
+      EXPECT_EQ(told, far && std::string(name) == "w.glb") << name;
+    }
+  }
+}
+
 }  // namespace
 }  // namespace atlas::test

@@ -41,6 +41,27 @@ TEST(Mtl, TexturesThatAreMissingOrBrokenFallBackToTheColour) {
   EXPECT_TRUE(load(path, options).defects.empty());
 }
 
+// The model of illumination that uses no light. In files of many programs, 0 stands for a model
+// that they do not know; only textures are taken at its word.
+TEST(Mtl, TexturesThatNothingLightsAreUnlit) {
+  const TempFolder folder;
+  ASSERT_TRUE(write_png(folder / "a.png", Image8(2, 2, 3, 77), {}).ok());
+  const auto unlit = [&](const std::string& lines) {
+    folder.write("m.mtl", "newmtl before\nillum 0\nmap_Kd a.png\nnewmtl a\n" + lines + "\n");
+    const Scene scene =
+        load(folder.write("s.obj", std::string("mtllib m.mtl\n") + kTexturedTriangle)).scene;
+    EXPECT_EQ(scene.materials.at(0).name, "a");
+    return scene.materials.at(0).unlit;
+  };
+  for (const char* lines : {"illum 0\nmap_Kd a.png", "map_Kd a.png\nillum 0",
+                            "ILLUM 0\nmap_kd a.png", "illum 2\nmap_Kd a.png\nKs 0 0 0\nillum 0"})
+    EXPECT_TRUE(unlit(lines)) << lines;
+  for (const char* lines : {"map_Kd a.png", "illum 1\nmap_Kd a.png", "illum\nmap_Kd a.png",
+                            "illum 0", "illum none\nmap_Kd a.png", "illum 0\nillum 2\nmap_Kd a.png",
+                            "Kd 1 1 1\nillum 0\nmap_Kd a.png\nillum 1"})
+    EXPECT_FALSE(unlit(lines)) << lines;
+}
+
 TEST(Mtl, TexturesOfLinearValuesAreEncodedAndClipped) {
   const TempFolder folder;
   ImageF linear(1, 1, 3);

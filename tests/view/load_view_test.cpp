@@ -112,6 +112,18 @@ TEST_F(LoadView, TexturesHoldLightIfTheCallerSaysSo) {
     EXPECT_EQ(load_view(path_ / "a.obj", {.textures_hold_light = baked}, {})->baked(), baked);
 }
 
+// As those of exported .obj files do.
+TEST_F(LoadView, TexturesThatNothingLightsHoldLight) {
+  ASSERT_TRUE(write_png(path_ / "t.png", Image8(2, 2, 3, 128), {}).ok());
+  std::ofstream(path_ / "a.obj") << "mtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nusemtl m\n"
+                                    "f 1/1 2/1 3/1\n";
+  for (const int model : {0, 1, 2}) {
+    std::ofstream(path_ / "a.mtl") << "newmtl m\nillum " << model << "\nmap_Kd t.png\n";
+    EXPECT_EQ(load_view(path_ / "a.obj", {}, {})->baked(), model == 0) << model;
+    EXPECT_FALSE(load_view(path_ / "a.obj", {.textures_hold_light = false}, {})->baked());
+  }
+}
+
 // Two triangles with a texture, in glTF whose second material only may be unlit.
 std::string two_materials(const std::string& first, const std::string& second) {
   const std::string look = R"("pbrMetallicRoughness":{"baseColorTexture":{"index":0}})";

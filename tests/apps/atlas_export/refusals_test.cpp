@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <cstring>
 #include <filesystem>
 #include <string>
 
@@ -97,6 +98,15 @@ TEST_F(AtlasExport, OverwritesNothingThatItReads) {
     EXPECT_NE(r.output.find(name), std::string::npos) << r.output;
   }
   EXPECT_EQ(slurp(scene), text);
+  // The material file has a name that viewers can load.
+  ASSERT_EQ(run(fmt::format("{0}/box.obj -o '{0}/a #1.obj' -q", dir_.string())).exit_code, 0);
+  const std::string obj = slurp(dir_ / "a #1.obj");
+  const std::string safe = obj.substr(obj.find("mtllib ") + 7, std::strlen("a__1-0000.mtl"));
+  EXPECT_TRUE(safe.starts_with("a__1-") && safe.ends_with(".mtl")) << safe;
+  EXPECT_TRUE(fs::exists(dir_ / safe));
+  EXPECT_EQ(run(fmt::format("{0}/box.obj -o '{0}/a #1.obj' --report {0}/{1}", dir_.string(), safe))
+                .exit_code,
+            2);
   // The texture of a scene has the name of the first new page.
   ASSERT_EQ(run(fmt::format("{0}/box.obj -o {0}/w.obj -q", dir_.string())).exit_code, 0);
   const std::string page = slurp(dir_ / "w_0.png");

@@ -70,7 +70,6 @@ TEST_F(AtlasPack, WhatCannotBeDoneLeavesNothing) {
       {"images folder -o folder/q", "in the folder that is read"},
       {"mesh uv.obj -o uv.obj", "would overwrite"},
       {"mesh uv.obj -o q.stl", "must end in .obj"},
-      {"mesh uv.obj -o 'two\nlines.obj'", "line ends"},
       {"mesh uv.obj -o q.obj --rotations 3", "--rotations"},
       {"mesh plain.obj -o q.obj", "plain.obj: has no uvs"},
       {"mesh folder -o q.obj", "is a directory"},

@@ -26,6 +26,23 @@ bool holds(const std::string& text, const std::string& part) {
 constexpr const char* kTriangle =
     "v 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 0 1\nf 1/1 2/2 3/3\n";
 
+TEST_F(AtlasPack, MaterialFilesHaveSafeNames) {
+  write("m.obj", kTriangle);
+  const RunResult r = run("mesh m.obj -o 'a #1.obj' --page 64");
+  ASSERT_EQ(r.exit_code, 0) << r.output;
+  const std::string obj = read("a #1.obj");
+  const std::size_t at = obj.find("mtllib a__1-");
+  ASSERT_NE(at, std::string::npos) << obj;
+  const std::string name = obj.substr(at + 7, obj.find('\n', at) - at - 7);
+  EXPECT_EQ(read(name), "newmtl page_0\nKd 1 1 1\n");
+  EXPECT_TRUE(holds(r.output, name)) << r.output;
+  // Nothing that is read is written over.
+  write(name, "newmtl red\n");
+  write("n.obj", "mtllib " + name + "\n" + kTriangle);
+  EXPECT_EQ(run("mesh n.obj -o 'a #1.obj' --page 64").exit_code, 2);
+  EXPECT_EQ(read(name), "newmtl red\n");
+}
+
 // Returns the uvs of an OBJ in its order.
 std::vector<Vec2d> uvs_of(const std::string& obj) {
   std::vector<Vec2d> uvs;
