@@ -8,6 +8,7 @@
 
 #include "libatlas/core/parallel.h"
 #include "libatlas/core/random.h"
+#include "libatlas/pack/overlap_search.h"
 
 namespace atlas::pack {
 namespace {
@@ -35,7 +36,11 @@ constexpr std::size_t kLeastLeft = 4, kFewCharts = 5;
 // Words examined by all starts together, 2 ns each.
 constexpr std::uint64_t kSearchWork = 160'000'000;
 constexpr std::uint64_t kLayouts = 32;  // layouts of one start
-// Maximum number of doublings: `best` doubles both kSearchWork and kLayouts each round.
+// Of the starts of a round, so many are made lower by letting charts overlap for a while, with this
+// work in words for each. Twice the work for half as many starts ends as full.
+constexpr std::size_t kLowered = 4;
+constexpr std::uint64_t kOverlapWork = 20'000'000;
+// Maximum number of doublings: `best` doubles kSearchWork, kLayouts and kOverlapWork each round.
 constexpr std::uint32_t kMostDoublings = 4, kFirstDoublings = 2;
 constexpr std::uint32_t kDirections = 24;
 // The number of cells across a page: normally, for many charts, and from the second draw on. Finer
@@ -82,6 +87,7 @@ std::vector<PressStart> PressStarts::make(std::uint32_t round) {
   std::vector<Runner> runners;
   for (std::size_t k = 0; k < count; ++k) runners.push_back(runner(k, count, round));
   race(runners, round);
+  lower_fullest(runners, round);
   std::vector<PressStart> starts;
   for (Runner& r : runners) starts.push_back(std::move(r.start));
   return starts;
@@ -119,6 +125,31 @@ void PressStarts::race(std::vector<Runner>& runners, std::uint32_t round) const 
     left.resize(std::clamp<std::size_t>((left.size() + 1) / 2, std::min(kLeastLeft, left.size()),
                                         left.size()));
   }
+}
+
+// Makes the layouts of the fullest starts lower than any order of placing charts does.
+void PressStarts::lower_fullest(std::vector<Runner>& runners, std::uint32_t round) const {
+  std::vector<Runner*> fullest;
+  for (Runner& r : runners)
+    if (!r.start.poses.empty()) fullest.push_back(&r);
+  std::stable_sort(fullest.begin(), fullest.end(), [&](const Runner* a, const Runner* b) {
+    return goodness(a->start.page, options_) > goodness(b->start.page, options_);
+  });
+  fullest.resize(std::min(fullest.size(), kLowered));
+  parallel_for(context_, fullest.size(), 1, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t k = begin; k < end; ++k) {
+      Runner& r = *fullest[k];
+      Nest nest = r.search.run(0, context_).nest;
+      OverlapSearchOptions overlap;
+      overlap.width = r.width;
+      // A square page whose width decides does not become smaller.
+      overlap.low_enough = options_.free_aspect ? 0 : r.width;
+      overlap.work = kOverlapWork << doublings_in(round);
+      overlap.seed = r.seed;
+      r.start.work += search_overlaps(pieces_, overlap, context_, nest);
+      take(nest, r);
+    }
+  });
 }
 
 // Rasterises the charts as rigid bodies. The search only needs outlines as fine as its cells,
@@ -206,16 +237,19 @@ PressStarts::Runner PressStarts::runner(std::size_t k, std::size_t count,
   search.layouts = kLayouts << doublings;
   // If there are only few charts, the search changes their order often enough.
   const LargestBy by = pieces_.size() < kManyCharts ? LargestBy::cells : LargestBy::boxes;
-  return {NestSearch(pieces_, plan_by_size(pieces_, by), search), search.width, {}};
+  return {NestSearch(pieces_, plan_by_size(pieces_, by), search), search.width, random.next(), {}};
 }
 
 void PressStarts::note(const NestSearchResult& found, Runner& runner) const {
   PressStart& start = runner.start;
   start.layouts = found.layouts;
   start.work = found.work;
-  if (!found.nest.left_over.empty()) return;
-  put_down(found.nest, start);
-  start.page = {runner.width * double(cell_), found.nest.used_height * double(cell_)};
+  if (found.nest.left_over.empty()) take(found.nest, runner);
+}
+
+void PressStarts::take(const Nest& nest, Runner& runner) const {
+  put_down(nest, runner.start);
+  runner.start.page = {runner.width * double(cell_), nest.used_height * double(cell_)};
 }
 
 // Places a single chart in the direction in which its page is smallest.

@@ -63,13 +63,16 @@ class PressStarts {
   struct Runner {
     NestSearch search;
     std::int32_t width;
+    std::uint64_t seed;
     PressStart start;
   };
   Runner runner(std::size_t k, std::size_t count, std::uint32_t round) const;
   std::uint32_t doublings_in(std::uint32_t round) const;
   std::span<const double> legs(std::uint32_t round) const;
   void race(std::vector<Runner>& runners, std::uint32_t round) const;
+  void lower_fullest(std::vector<Runner>& runners, std::uint32_t round) const;
   void note(const NestSearchResult& found, Runner& runner) const;
+  void take(const Nest& nest, Runner& runner) const;
   PressStart alone() const;
   void put_down(const Nest& nest, PressStart& start) const;
 
