@@ -32,6 +32,8 @@ constexpr std::size_t kMostStarts = 20;
 constexpr std::array kLegs{1 / 3.0, 2 / 3.0, 1.0};
 constexpr std::array kAllAtOnce{1.0};
 constexpr std::array kLongLegs{1 / 32.0, 1 / 16.0, 1 / 8.0, 1.0};
+// Factor by which the last two thirds of the search make charts larger at most.
+constexpr double kMostBySearch = 1.005;
 constexpr std::size_t kLeastLeft = 4, kFewCharts = 5;
 // Words examined by all starts together, 2 ns each.
 constexpr std::uint64_t kSearchWork = 160'000'000;
@@ -78,7 +80,7 @@ PressStarts::PressStarts(std::span<const ChartOutline> outlines, const FitSearch
   draw();
 }
 
-std::vector<PressStart> PressStarts::make(std::uint32_t round) {
+std::vector<PressStart> PressStarts::make(std::uint32_t round, double least) {
   draw_pieces(round > 0 ? kFineCells : outlines_.size() < kManyCharts ? kCells : kCellsOfMany);
   const std::size_t n = std::max<std::size_t>(1, outlines_.size());
   const std::size_t count =
@@ -86,8 +88,7 @@ std::vector<PressStart> PressStarts::make(std::uint32_t round) {
   if (n == 1) return {alone()};
   std::vector<Runner> runners;
   for (std::size_t k = 0; k < count; ++k) runners.push_back(runner(k, count, round));
-  race(runners, round);
-  lower_fullest(runners, round);
+  if (race(runners, round, least)) lower_fullest(runners, round);
   std::vector<PressStart> starts;
   for (Runner& r : runners) starts.push_back(std::move(r.start));
   return starts;
@@ -107,24 +108,39 @@ std::span<const double> PressStarts::legs(std::uint32_t round) const {
   return kLongLegs;
 }
 
+double PressStarts::scale_on_page(const SqueezePage& page) const {
+  const double side = std::max(page.width, page.height);
+  return side > 0 ? scale_ * options_.page_size / side : 0;
+}
+
+// Runs these searches until this share of their limits is used up, and sorts them, best first.
+void PressStarts::run(std::vector<Runner*>& runners, double share) const {
+  parallel_for(context_, runners.size(), 1, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t k = begin; k < end; ++k) {
+      Runner& r = *runners[k];
+      note(r.search.run(share, context_), r);
+    }
+  });
+  std::stable_sort(runners.begin(), runners.end(), [&](const Runner* a, const Runner* b) {
+    return goodness(a->start.page, options_) > goodness(b->start.page, options_);
+  });
+}
+
 // Runs the searches of all starts. Whether a strip's width suits the charts shows early, so the
 // worse half is given up twice on the way. Twelve searches take three fifths of the time then.
-void PressStarts::race(std::vector<Runner>& runners, std::uint32_t round) const {
+bool PressStarts::race(std::vector<Runner>& runners, std::uint32_t round, double least) const {
   std::vector<Runner*> left;
   for (Runner& r : runners) left.push_back(&r);
+  if (least > 0) {
+    run(left, kLegs[0]);
+    if (scale_on_page(left.front()->start.page) * kMostBySearch < least) return false;
+  }
   for (const double share : legs(round)) {
-    parallel_for(context_, left.size(), 1, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t k = begin; k < end; ++k) {
-        Runner& r = *left[k];
-        note(r.search.run(share, context_), r);
-      }
-    });
-    std::stable_sort(left.begin(), left.end(), [&](const Runner* a, const Runner* b) {
-      return goodness(a->start.page, options_) > goodness(b->start.page, options_);
-    });
+    run(left, share);
     left.resize(std::clamp<std::size_t>((left.size() + 1) / 2, std::min(kLeastLeft, left.size()),
                                         left.size()));
   }
+  return true;
 }
 
 // Makes the layouts of the fullest starts lower than any order of placing charts does.
