@@ -45,8 +45,8 @@ void PairOverlaps::measure(std::uint32_t i) {
 
 void PairOverlaps::measure(std::uint32_t i, std::uint32_t j) {
   const NestPlace &p = places_[i], &q = places_[j];
-  const std::int32_t now = shared_cells(pieces_[i].masks[p.direction], p.at,
-                                        pieces_[j].masks[q.direction], q.at);
+  const std::int32_t now =
+      shared_cells(pieces_[i].masks[p.direction], p.at, pieces_[j].masks[q.direction], q.at);
   const std::int32_t more = now - cells_[pair(i, j)];
   if (more == 0) return;
   cells_[pair(i, j)] = cells_[pair(j, i)] = now;

@@ -77,7 +77,9 @@ WeightMap::WeightMap(std::int32_t width, std::int32_t height)
   sums_.resize(index(width + 1, 0));
 }
 
-void WeightMap::clear() { std::fill(steps_.begin(), steps_.end(), 0); }
+void WeightMap::clear() {
+  std::fill(steps_.begin(), steps_.end(), 0);
+}
 
 void WeightMap::add(const Mask& mask, BitPage::Place at, std::int32_t weight) {
   for (std::int32_t r = 0; r < mask.height; ++r)
