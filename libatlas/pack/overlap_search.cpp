@@ -57,9 +57,10 @@ class OverlapSearch {
         options_(options),
         nest_(nest),
         places_(nest.places),
+        masks_(masks_of(pieces, nest.places)),
         height_(nest.used_height),
         map_(options.width, nest.used_height),
-        pairs_(pieces, places_),
+        pairs_(masks_),
         random_(options.seed) {}
 
   std::uint64_t run(const Context& context) {
@@ -74,7 +75,7 @@ class OverlapSearch {
         kept_ = places_;
         vain_ = 0;
       } else if (++vain_ > kVainRounds) {
-        places_ = kept_;
+        for (const std::uint32_t i : pairs_.taking_part()) put(i, kept_[i]);
         pairs_.reset();
         vain_ = 0;
       }
@@ -85,10 +86,23 @@ class OverlapSearch {
   }
 
  private:
+  static std::vector<PlacedMask> masks_of(std::span<const Piece> pieces,
+                                          std::span<const NestPlace> places) {
+    std::vector<PlacedMask> masks(pieces.size());
+    for (std::size_t i = 0; i < pieces.size(); ++i)
+      if (places[i].placed) masks[i] = {&pieces[i].masks[places[i].direction], places[i].at};
+    return masks;
+  }
+
+  void put(std::uint32_t i, const NestPlace& place) {
+    places_[i] = place;
+    masks_[i] = {&mask(i, place.direction), place.at};
+  }
+
   const Mask& mask(std::uint32_t i, std::uint32_t direction) const {
     return pieces_[i].masks[direction];
   }
-  const Mask& mask(std::uint32_t i) const { return mask(i, places_[i].direction); }
+  const Mask& mask(std::uint32_t i) const { return *masks_[i].mask; }
   bool fits(const Mask& m) const {
     return m.cells > 0 && m.width <= options_.width && m.height <= height_;
   }
@@ -96,7 +110,7 @@ class OverlapSearch {
   void take() {
     nest_.places = places_;
     nest_.used_height = 0;
-    for (const std::uint32_t i : pairs_.pieces())
+    for (const std::uint32_t i : pairs_.taking_part())
       nest_.used_height = std::max(nest_.used_height, places_[i].at.y + mask(i).height);
     height_ = nest_.used_height;
   }
@@ -104,8 +118,8 @@ class OverlapSearch {
   // Makes the strip lower and pushes the pieces into it. Returns false if a piece is too large.
   bool lower() {
     height_ -= std::max(1, height_ / kShrink);
-    for (const std::uint32_t i : pairs_.pieces()) {
-      NestPlace& p = places_[i];
+    for (const std::uint32_t i : pairs_.taking_part()) {
+      NestPlace p = places_[i];
       if (!fits(mask(i))) {
         const auto& masks = pieces_[i].masks;
         const auto found =
@@ -114,7 +128,8 @@ class OverlapSearch {
         p.direction = static_cast<std::uint32_t>(found - masks.begin());
         p.at.x = std::min(p.at.x, options_.width - found->width);
       }
-      p.at.y = std::min(p.at.y, height_ - mask(i).height);
+      p.at.y = std::min(p.at.y, height_ - mask(i, p.direction).height);
+      put(i, p);
     }
     pairs_.reset();
     least_ = std::numeric_limits<std::int64_t>::max();
@@ -125,7 +140,7 @@ class OverlapSearch {
   // Moves all pieces that overlap others, in random order.
   void move_all() {
     order_.clear();
-    for (const std::uint32_t i : pairs_.pieces())
+    for (const std::uint32_t i : pairs_.taking_part())
       if (pairs_.overlaps(i)) order_.push_back(i);
     for (auto k = static_cast<std::uint32_t>(order_.size()); k > 1; --k)
       std::swap(order_[k - 1], order_[random_.below(k)]);
@@ -135,7 +150,7 @@ class OverlapSearch {
 
   void move(std::uint32_t i) {
     map_.clear();
-    for (const std::uint32_t j : pairs_.pieces()) {
+    for (const std::uint32_t j : pairs_.taking_part()) {
       if (j == i) continue;
       map_.add(mask(j), places_[j].at, pairs_.weight(i, j));
       work_ += mask(j).runs.size();
@@ -150,8 +165,7 @@ class OverlapSearch {
       refine(i, c);
       if (c.weight < lightest.weight) lightest = c;
     }
-    places_[i].at = lightest.at;
-    places_[i].direction = lightest.direction;
+    put(i, {true, lightest.direction, lightest.at});
     pairs_.measure(i);
   }
 
@@ -229,6 +243,7 @@ class OverlapSearch {
   const OverlapSearchOptions& options_;
   Nest& nest_;  // the lowest layout without overlaps so far
   std::vector<NestPlace> places_, kept_;
+  std::vector<PlacedMask> masks_;  // those of places_
   std::int32_t height_;
   WeightMap map_;
   PairOverlaps pairs_;

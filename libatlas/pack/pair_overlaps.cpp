@@ -3,32 +3,29 @@
 #include <algorithm>
 
 namespace atlas::pack {
-namespace {
 
-// Returns the number of cells that both masks cover at these places.
-std::int32_t shared_cells(const Mask& a, BitPage::Place p, const Mask& b, BitPage::Place q) {
-  if (p.x >= q.x + b.width || q.x >= p.x + a.width) return 0;
-  const std::int32_t from = std::max(p.y, q.y), to = std::min(p.y + a.height, q.y + b.height);
+std::int32_t shared_cells(const PlacedMask& a, const PlacedMask& b) {
+  const BitPage::Place p = a.at, q = b.at;
+  if (p.x >= q.x + b.mask->width || q.x >= p.x + a.mask->width) return 0;
+  const std::int32_t from = std::max(p.y, q.y);
+  const std::int32_t to = std::min(p.y + a.mask->height, q.y + b.mask->height);
   std::int32_t cells = 0;
   for (std::int32_t y = from; y < to; ++y)
-    for (const Run& r : a.row(y - p.y))
-      for (const Run& s : b.row(y - q.y))
-        cells += std::max(
-            0, std::min(r.end + p.x, s.end + q.x) - std::max(r.begin + p.x, s.begin + q.x));
+    for (const Run& r : a.mask->row(y - p.y))
+      for (const Run& s : b.mask->row(y - q.y)) {
+        const std::int32_t begin = std::max(r.begin + p.x, s.begin + q.x);
+        cells += std::max(0, std::min(r.end + p.x, s.end + q.x) - begin);
+      }
   return cells;
 }
 
-}  // namespace
-
-PairOverlaps::PairOverlaps(std::span<const Piece> pieces, const std::vector<NestPlace>& places)
-    : pieces_(pieces), places_(places) {
-  const std::size_t n = pieces.size();
+PairOverlaps::PairOverlaps(std::span<const PlacedMask> masks) : masks_(masks) {
+  const std::size_t n = masks.size();
   for (std::uint32_t i = 0; i < n; ++i)
-    if (places[i].placed && pieces[i].masks[places[i].direction].cells > 0)
-      taking_part_.push_back(i);
+    if (masks[i].mask && masks[i].mask->cells > 0) taking_part_.push_back(i);
   cells_.assign(n * n, 0);
   weights_.assign(n * n, kLeastWeight);
-  of_piece_.assign(n, 0);
+  of_mask_.assign(n, 0);
 }
 
 void PairOverlaps::reset() {
@@ -44,27 +41,27 @@ void PairOverlaps::measure(std::uint32_t i) {
 }
 
 void PairOverlaps::measure(std::uint32_t i, std::uint32_t j) {
-  const NestPlace &p = places_[i], &q = places_[j];
-  const std::int32_t now =
-      shared_cells(pieces_[i].masks[p.direction], p.at, pieces_[j].masks[q.direction], q.at);
+  const std::int32_t now = shared_cells(masks_[i], masks_[j]);
   const std::int32_t more = now - cells_[pair(i, j)];
   if (more == 0) return;
   cells_[pair(i, j)] = cells_[pair(j, i)] = now;
-  of_piece_[i] += more;
-  of_piece_[j] += more;
+  of_mask_[i] += more;
+  of_mask_[j] += more;
   total_ += more;
 }
 
 void PairOverlaps::raise_weights() {
-  constexpr std::int64_t kRaise = 20, kRaiseMost = 100, kDecay = 16;  // percent, and a share
-  const std::int64_t most = *std::max_element(cells_.begin(), cells_.end());
+  // By at least and at most these percentages. Other weights fall by a sixteenth.
+  constexpr std::int64_t kLeast = 20, kMost = 100;
+  std::int64_t most = 1;
+  for (const std::int32_t cells : cells_) most = std::max<std::int64_t>(most, cells);
   for (std::size_t k = 0; k < cells_.size(); ++k) {
     std::int32_t& w = weights_[k];
     if (cells_[k] == 0) {
-      w = std::max<std::int32_t>(kLeastWeight, w - w / kDecay);
+      w = std::max(kLeastWeight, w - w / 16);
       continue;
     }
-    const std::int64_t percent = kRaise + (kRaiseMost - kRaise) * cells_[k] / most;
+    const std::int64_t percent = kLeast + (kMost - kLeast) * cells_[k] / most;
     w = static_cast<std::int32_t>(std::min<std::int64_t>(kMostWeight, w + w * percent / 100));
   }
 }
