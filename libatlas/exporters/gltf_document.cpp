@@ -113,6 +113,20 @@ std::size_t GltfDocument::add_zeros(std::size_t count) {
                        {"max", zero}});
 }
 
+std::size_t GltfDocument::add_colours(std::span<const Vec3f> colours,
+                                      std::span<const float> alphas) {
+  std::vector<float> rgba;
+  rgba.reserve(4 * colours.size());
+  for (std::size_t i = 0; i < colours.size(); ++i)
+    rgba.insert(rgba.end(), {colours[i].x, colours[i].y, colours[i].z, alphas[i]});
+  const std::size_t view =
+      add_view(rgba.data(), rgba.size() * sizeof(float), {{"target", kArrayBuffer}});
+  return add_accessor({{"bufferView", view},
+                       {"componentType", kFloat},
+                       {"type", "VEC4"},
+                       {"count", colours.size()}});
+}
+
 std::size_t GltfDocument::add_uvs(std::vector<Vec2f> values) {
   for (Vec2f& uv : values) uv.y = 1 - uv.y;
   const std::size_t view =

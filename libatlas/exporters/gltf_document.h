@@ -31,6 +31,8 @@ class GltfDocument {
   // of uvs point up in `values`; they are reversed as glTF requires.
   std::size_t add_positions(std::span<const Vec3f> values);
   std::size_t add_vectors(std::span<const Vec3f> values);
+  // RGBA of `colours` and as many `alphas`.
+  std::size_t add_colours(std::span<const Vec3f> colours, std::span<const float> alphas);
   std::size_t add_uvs(std::vector<Vec2f> values);
   // Vectors of zeros, with bounds, which take no space in the file.
   std::size_t add_zeros(std::size_t count);

@@ -248,12 +248,18 @@ class FileWriter {
   json rows_of(const std::map<std::string, int>& attributes,
                const std::vector<std::uint32_t>& vertices, const char* loss) {
     json result = json::object();
+    std::map<int, std::size_t>
+        uvs;  // sets that refer to the same data still do: readers rely on it
     for (const auto& [name, accessor] : attributes) {
       if (name == texcoord_name(set_)) continue;  // replaced
-      if (const auto rows = data_.rows(accessor, vertices, name == "POSITION"))
+      const bool is_uv = name.starts_with("TEXCOORD_");
+      if (const auto same = uvs.find(accessor); is_uv && same != uvs.end())
+        result[name] = same->second;
+      else if (const auto rows = data_.rows(accessor, vertices, name == "POSITION"))
         result[name] = *rows;
       else
         losses_.add(loss);
+      if (is_uv && result.contains(name)) uvs.emplace(accessor, result[name]);
     }
     return result;
   }

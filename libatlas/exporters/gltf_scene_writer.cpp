@@ -128,13 +128,21 @@ class MaterialWriter {
   std::map<std::pair<TextureWrap, TextureWrap>, std::size_t> samplers_;
 };
 
+constexpr const char* kColours = "COLOR_0";
+
 // Returns the attribute that holds the vertices' light. Values within 0 to 1 are a colour to
 // viewers; for others, the attribute has a name of this library's own.
 const char* light_attribute(const std::vector<Vec3f>& light) {
   const auto is_colour = [](const Vec3f& v) {
     return std::min({v.x, v.y, v.z}) >= 0 && std::max({v.x, v.y, v.z}) <= 1;
   };
-  return std::all_of(light.begin(), light.end(), is_colour) ? "COLOR_0" : "_ILLUMINANCE";
+  return std::all_of(light.begin(), light.end(), is_colour) ? kColours : "_ILLUMINANCE";
+}
+
+// Returns whether alpha of the vertices is written: it needs colours beside it.
+bool holds_alpha(const Scene& scene) {
+  return scene.lit() && !scene.vertex_opacity.empty() &&
+         light_attribute(scene.illumination) == kColours;
 }
 
 class SceneWriter {
@@ -145,7 +153,8 @@ class SceneWriter {
         document_(document),
         texcoord_(first_equals(scene_.texcoords)),
         normal_(first_equals(scene_.normals)),
-        light_(light_attribute(scene_.illumination)) {}
+        light_(light_attribute(scene_.illumination)),
+        writes_alpha_(holds_alpha(scene_)) {}
 
   // Adds the part as a primitive to its object's mesh.
   void add(const ScenePart& part, std::size_t material, WorldFile& result) {
@@ -218,10 +227,17 @@ class SceneWriter {
   }
 
   // Readers use 0 for vertices without light in a scene where others have some. Viewers would draw
-  // them black, so a part whose vertices all have 0 gets no light.
+  // them black, so a part whose vertices all have 0 and are opaque gets no light.
   void add_light(const std::vector<Key>& vertices, json& to) {
     if (!scene_.lit()) return;
     const std::vector<Vec3f> light = gather(scene_.illumination, vertices, 0);
+    if (writes_alpha_) {
+      const std::vector<float> alpha = gather(scene_.vertex_opacity, vertices, 0);
+      if (std::any_of(alpha.begin(), alpha.end(), [](float a) { return a != 1; })) {
+        to[kColours] = document_.add_colours(light, alpha);
+        return;
+      }
+    }
     const bool any = std::any_of(light.begin(), light.end(), [](auto& v) { return v != Vec3f{}; });
     if (any) to[light_] = document_.add_vectors(light);
   }
@@ -244,6 +260,7 @@ class SceneWriter {
   GltfDocument& document_;
   std::vector<std::uint32_t> texcoord_, normal_;  // index of the first equal value
   const char* light_;                             // name of the light's attribute
+  bool writes_alpha_;                             // whether parts that are not opaque have it
   std::uint32_t object_ = 0;                      // the object of the last mesh
   bool own_uvs_ = false;                          // whether any part has uvs of its own
 };
@@ -253,6 +270,7 @@ class SceneWriter {
 std::vector<std::string> losses_of(const Scene& scene) {
   Losses losses;
   losses.add(scene.not_read);
+  if (!holds_alpha(scene)) count_vertex_alpha(scene, losses);
   for (const Material& material : scene.materials) {
     losses.add("colours of materials beyond 0 to 1, limited to it",
                !is_reflectance(material.diffuse));

@@ -99,6 +99,7 @@ std::size_t triangles_with_uvs(const Scene& scene) {
 // Counts what the scene's file has and this one does not. If the scene holds its source file, that
 // tells more than what the reader has counted.
 void count_file_losses(const Scene& scene, Losses& losses) {
+  count_vertex_alpha(scene, losses);
   if (scene.source) return count_losses(scene.source->model, losses);
   losses.add(scene.not_read);
   losses.add("triangles with uvs of their own", triangles_with_uvs(scene));

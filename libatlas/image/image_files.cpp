@@ -16,6 +16,7 @@
 #include <type_traits>
 #include <utility>
 
+#include "libatlas/core/srgb.h"
 #include "libatlas/core/write_error.h"
 #include "libatlas/image/file_kind.h"
 #include "libatlas/image/image_claim.h"
@@ -153,19 +154,27 @@ bool may_be_multiplied(const OIIO::ImageInput& input) {
          input.spec().get_int_attribute("oiio:UnassociatedAlpha") == 0;
 }
 
-// Divides colours by alpha where a TIFF says that they are multiplied by it. Those of other formats
-// that say so are linear (OpenEXR), and no textures.
+// Returns whether the image's colours are multiplied by its last channel, alpha. TIFF files say it,
+// and those of OpenEXR are so by definition. The readers of other formats do not all say it, or
+// not truly (may_be_multiplied).
+bool is_multiplied(const OIIO::ImageInput& input) {
+  const OIIO::ImageSpec& spec = input.spec();
+  const std::string_view format = input.format_name();
+  return (format == "tiff" || format == "openexr") && spec.alpha_channel > 0 &&
+         spec.alpha_channel == spec.nchannels - 1 &&
+         spec.get_int_attribute("oiio:UnassociatedAlpha") == 0;
+}
+
+// Divides colours by alpha. Where alpha is 0, colours stay as they are: those of OpenEXR are light
+// that a clear pixel adds, such as a glow.
 template <class T>
-void divide_by_alpha(const OIIO::ImageInput& input, Image<T>& image) {
-  const int alpha = input.spec().alpha_channel;
-  if (std::string_view(input.format_name()) != "tiff" || alpha != image.channels - 1 ||
-      input.spec().get_int_attribute("oiio:UnassociatedAlpha") != 0)
-    return;
+void divide_by_alpha(Image<T>& image) {
+  const auto alpha = std::size_t(image.channels - 1);
   constexpr float kOne = std::is_same_v<T, std::uint8_t> ? 255 : 1;
-  for (std::size_t i = 0; i < image.texels.size(); i += std::size_t(image.channels)) {
-    const float share = float(image.texels[i + std::size_t(alpha)]) / kOne;
+  for (std::size_t i = 0; i < image.texels.size(); i += alpha + 1) {
+    const float share = float(image.texels[i + alpha]) / kOne;
     if (!(share > 0) || share >= 1) continue;
-    for (std::size_t c = 0; c < std::size_t(alpha); ++c) {
+    for (std::size_t c = 0; c < alpha; ++c) {
       const float colour = float(image.texels[i + c]) / share;
       if constexpr (std::is_same_v<T, std::uint8_t>)
         image.texels[i + c] = T(std::min(kOne, std::round(colour)));
@@ -173,6 +182,30 @@ void divide_by_alpha(const OIIO::ImageInput& input, Image<T>& image) {
         image.texels[i + c] = colour;
     }
   }
+}
+
+Image8 quantized(const ImageF& image) {
+  Image8 bytes(image.width, image.height, image.channels);
+  std::transform(image.texels.begin(), image.texels.end(), bytes.texels.begin(), quantize8);
+  return bytes;
+}
+
+// Reads pixels with colours that are not multiplied by alpha. Floats are divided before they are
+// rounded to 8 bits.
+template <class T>
+Result<Image<T>> read_colours(const Source& source) {
+  const bool multiplied = is_multiplied(*source.input);
+  if constexpr (std::is_same_v<T, std::uint8_t>) {
+    if (multiplied && source.input->spec().format.is_floating_point()) {
+      Result<ImageF> image = read_pixels<float>(source);
+      if (!image.ok()) return image.status();
+      divide_by_alpha(*image);
+      return quantized(*image);
+    }
+  }
+  Result<Image<T>> image = read_pixels<T>(source);
+  if (image.ok() && multiplied) divide_by_alpha(*image);
+  return image;
 }
 
 // Reads the colours of a WebP file again, from a copy without alpha. Dividing the multiplied ones
@@ -234,8 +267,7 @@ Result<Image<T>> read(const std::filesystem::path& path) {
   return within_memory(path.string(), [&]() -> Result<Image<T>> {
     const Result<Source> source = open_file(path);
     if (!source.ok()) return source.status();
-    Result<Image<T>> image = read_pixels<T>(*source);
-    if (image.ok()) divide_by_alpha(*source->input, *image);
+    Result<Image<T>> image = read_colours<T>(*source);
     if (!image.ok() || !may_be_multiplied(*source->input)) return image;
     const Result<std::vector<std::uint8_t>> file = whole_file(*source);
     if (!file.ok()) return file.status();

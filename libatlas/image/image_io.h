@@ -17,8 +17,9 @@
 namespace atlas {
 
 // Reads any format that OpenImageIO supports as 8-bit values, with all channels and without colour
-// conversion (an sRGB file stays sRGB-encoded). Colours are not multiplied by alpha, unless the
-// file stores them so, as some TIFF files do.
+// conversion (an sRGB file stays sRGB-encoded). Colours are not multiplied by alpha: those that a
+// TIFF says are so, and all of OpenEXR files with an alpha as their last channel, are divided by
+// it, except where it is 0.
 Result<Image8> read_image8(const std::filesystem::path& path);
 
 // The same for an encoded file (PNG, JPEG or WebP) in memory. Its bytes tell the format; `name` is
@@ -55,6 +56,8 @@ Status write_png(const std::filesystem::path& path, const Image8& image, const P
 
 // Writes a ZIP-compressed OpenEXR file of scene-linear values: as half floats, or as floats if the
 // image is too bright (a value above 65504) or too dark (no value above 0.006) for half floats.
+// Values are written as they are: by the format, colours beside an alpha (of 2 or 4 channels) are
+// multiplied by it.
 Status write_exr(const std::filesystem::path& path, const ImageF& image);
 
 }  // namespace atlas

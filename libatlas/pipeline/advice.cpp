@@ -72,14 +72,26 @@ std::string on_long_texels(const ExportReport& report, double texels_a_chart) {
       report.charts.size(), texels_a_chart, packed_texel_mm(report));
 }
 
+// From this share of the pages on, a lower least side leaves noticeably more of them to other
+// charts: texels become a twentieth shorter, or more.
+constexpr double kMuchHeld = 0.1;
+
+// Returns what lets pages hold shorter texels.
+std::string room_for_texels(const ExportReport& report, const ExportOptions& options) {
+  const bool held = report.least_side_share >= kMuchHeld && options.min_side > 1;
+  return held ? "more ExportOptions::atlases, a larger ExportOptions::atlas_size or a lower "
+                "ExportOptions::min_side"
+              : "more ExportOptions::atlases or a larger ExportOptions::atlas_size";
+}
+
 std::string on_coarse_texels(const ExportReport& report, const ExportOptions& options) {
   const bool given = options.texel_metres > 0;
   return fmt::format(
-      "texels are {:.3g} mm long, not the {:.3g} mm {}, since the pages hold no more (more "
-      "ExportOptions::atlases or a larger ExportOptions::atlas_size, or a longer "
-      "ExportOptions::texel_metres{})",
+      "texels are {:.3g} mm long, not the {:.3g} mm {}, since the pages hold no more ({}, or a "
+      "longer ExportOptions::texel_metres{})",
       packed_texel_mm(report), 1e3 * report.texel * report.metres_per_unit,
-      given ? "of ExportOptions::texel_metres" : "that are usual", given ? "" : " if it will do");
+      given ? "of ExportOptions::texel_metres" : "that are usual", room_for_texels(report, options),
+      given ? "" : " if it will do");
 }
 
 // Pages below this are visibly poorer than the light, as long as finer texels could show more of
@@ -101,14 +113,13 @@ bool loses_detail(const ExportReport& report) {
          2 * texel > report.plan.light_spacing_m && report.plan.light_spacing_m > 0;
 }
 
-std::string on_lost_detail(const ExportReport& report) {
+std::string on_lost_detail(const ExportReport& report, const ExportOptions& options) {
   const bool held = report.packed_texel <= 1.1 * report.texel;
   return fmt::format(
       "pages show the light to {:.1f} dB only: their texels are {:.3g} mm long, and the vertices "
       "that carry the light are {:.3g} mm apart ({})",
       report.fidelity.psnr, packed_texel_mm(report), 1e3 * report.plan.light_spacing_m,
-      held ? "a shorter ExportOptions::texel_metres"
-           : "more ExportOptions::atlases or a larger ExportOptions::atlas_size");
+      held ? "a shorter ExportOptions::texel_metres" : room_for_texels(report, options));
 }
 
 std::string on_white(const ExportReport& report) {
@@ -189,7 +200,7 @@ std::vector<std::string> advice_on(const ExportReport& report, const ExportOptio
   if (coarse && (asked > 0 || !is_faithful(report)))
     lines.push_back(on_coarse_texels(report, options));
   else if (loses_detail(report))
-    lines.push_back(on_lost_detail(report));
+    lines.push_back(on_lost_detail(report, options));
   // A measured white suits the light, even if all light is equal.
   if (options.tone.white <= 0 && options.tone.exposure_stops == 0) return lines;
   const LuminanceStatistics& light = report.luminance;

@@ -244,9 +244,11 @@ class Export {
     report_.utilization = layout_.utilization;
     report_.uv_utilization = layout_.uv_utilization;
     report_.outlines = layout_.outlines;
-    if (plan_.bake)
+    if (plan_.bake) {
       report_.packed_texel =
           packed_texel(charts_, full_densities_, layout_.scale, report_.texel / sizing_);
+      report_.least_side_share = least_side_share(charts_, densities_, layout_);
+    }
     std::string quality = fmt::format("scale {:.3f}, {:.0f} % used by charts", report_.scale,
                                       100 * layout_.uv_utilization);
     if (charts_.charts.size() > uncut)

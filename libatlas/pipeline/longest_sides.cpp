@@ -99,4 +99,19 @@ double packed_texel(const ChartSet& charts, std::span<const Vec2d> densities, do
   return texels > 0 ? std::sqrt(area / texels) : 0;
 }
 
+double least_side_share(const ChartSet& charts, std::span<const Vec2d> densities,
+                        const PageLayout& layout) {
+  double held = 0, texels = 0;
+  for (const ChartPlacement& placed : layout.placements) {
+    const Chart& chart = charts.charts[placed.chart];
+    const Vec2d wanted = densities[placed.chart], has = placed.texels_per_unit;
+    const double scaled = wanted.x * wanted.y * layout.scale * layout.scale;
+    const double area =
+        layout.outlines ? chart.distortion.surface_area : chart.size.x * chart.size.y;
+    held += area * std::max(0.0, has.x * has.y - scaled);
+  }
+  for (const Extent& page : layout.pages) texels += double(page.width) * page.height;
+  return texels > 0 ? held / texels : 0;
+}
+
 }  // namespace atlas

@@ -6,6 +6,7 @@
 
 #include "libatlas/charts/charts.h"
 #include "libatlas/pipeline/export_options.h"
+#include "libatlas/pipeline/page_layout.h"
 #include "libatlas/texture/chart_textures.h"
 
 namespace atlas {
@@ -41,5 +42,11 @@ TextureOptions scaled(TextureOptions options, double factor);
 // of `texel`, the length asked for, count as that.
 double packed_texel(const ChartSet& charts, std::span<const Vec2d> densities, double scale,
                     double texel);
+
+// Returns the share of the pages' texels that charts have only because no side may become shorter
+// than LayoutOptions::minimum_side: what they hold beyond the common scale. `densities` are the
+// wanted ones, as for lay_out_pages().
+double least_side_share(const ChartSet& charts, std::span<const Vec2d> densities,
+                        const PageLayout& layout);
 
 }  // namespace atlas

@@ -82,6 +82,9 @@ struct ExportReport {
   // texels.
   double utilization = 0;
   double uv_utilization = 0;  // uv area of the charts / area of the pages
+  // The share of the pages' texels that charts have only because of ExportOptions::min_side: what
+  // they hold beyond the common scale. With baked light.
+  double least_side_share = 0;
   bool outlines = false;
   // Triangles written that rounding the uvs to floats turns over or leaves no area.
   std::uint64_t thin_triangles = 0;

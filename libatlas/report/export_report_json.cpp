@@ -193,6 +193,7 @@ Json pages_json(const ExportReport& r) {
                {"outlines", r.outlines},
                {"utilization", r.utilization},
                {"uv_utilization", r.uv_utilization},
+               {"least_side_share", r.least_side_share},
                {"opened_charts", r.opened_charts}};
   if (r.gaps) {
     packing["border_texels"] = r.gaps->border;

@@ -39,6 +39,18 @@ Status check_vertices(const Scene& scene) {
     return wrong("positions[{}] is not finite", v);
   if (const std::size_t v = first_not_finite(scene.illumination); v < scene.illumination.size())
     return wrong("illumination[{}] is not finite (where it is unknown, 0 leaves it black)", v);
+  if (!scene.vertex_opacity.empty() && scene.vertex_opacity.size() != vertices)
+    return wrong("vertex_opacity has {} values for {} positions (one each, or none)",
+                 scene.vertex_opacity.size(), vertices);
+  if (!scene.unlit_colours.empty() && scene.unlit_colours.size() != vertices)
+    return wrong("unlit_colours has {} values for {} positions (one each, or none)",
+                 scene.unlit_colours.size(), vertices);
+  for (std::size_t v = 0; v < scene.unlit_colours.size(); ++v)
+    if (!is_reflectance(scene.unlit_colours[v]))
+      return wrong("unlit_colours[{}] is not within 0..1", v);
+  for (std::size_t v = 0; v < scene.vertex_opacity.size(); ++v)
+    if (!(scene.vertex_opacity[v] >= 0 && scene.vertex_opacity[v] <= 1))
+      return wrong("vertex_opacity[{}] is {} (must be within 0..1)", v, scene.vertex_opacity[v]);
   if (const std::size_t v = first_not_finite(scene.texcoords); v < scene.texcoords.size())
     return wrong("texcoords[{}] is not finite", v);
   for (std::size_t i = 0; i < scene.normals.size(); ++i) {

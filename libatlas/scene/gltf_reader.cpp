@@ -8,6 +8,7 @@
 #include "libatlas/core/glm_bridge.h"
 #include "libatlas/scene/formats.h"
 #include "libatlas/scene/gltf_check.h"
+#include "libatlas/scene/gltf_colours.h"
 #include "libatlas/scene/gltf_file.h"
 #include "libatlas/scene/gltf_instances.h"
 #include "libatlas/scene/gltf_losses.h"
@@ -28,9 +29,8 @@ constexpr std::size_t kMaxVisits = std::size_t{1} << 20;
 // file of a few kilobytes can ask for a million times as much as it holds.
 constexpr double kMaxShown = double(1 << 29);
 
-Vec3f three(const std::vector<float>& values, std::size_t i) {
-  return {values[3 * i], values[3 * i + 1], values[3 * i + 2]};
-}
+// The sets of uvs among which the new ones of a kept scene are looked for.
+constexpr int kMostUvSets = 16;
 
 // Converts to floats, and normalises a vector that a node's scale has made too long or short.
 Vec3f direction(const glm::dvec3& v) {
@@ -222,6 +222,8 @@ class GltfParser {
         at->second = *added;
       }
       primitive.vertices = at->second;
+      if (const RawMaterial& m = builder_.materials[primitive.material]; m.unlit && m.texture >= 0)
+        add_gltf_unlit_colours(model_, raw, {at->second.first, at->second.count}, builder_);
       if (Status s = add_texcoords(raw, primitive); !s.ok()) return s;
       if (Status s = add_corners(raw, mode, primitive); !s.ok()) return s;
       primitives_.push_back(std::move(primitive));
@@ -238,26 +240,39 @@ class GltfParser {
     for (const glm::dvec3& p : posed->positions) builder_.positions.push_back(from_glm(p));
     const Vertices added{base, count, builder_.normals.size(), !posed->normals.empty()};
     for (const glm::dvec3& n : posed->normals) builder_.normals.push_back(direction(n));
-    builder_.linear_light = true;
-    int values = gltf_attribute(raw.attributes, "_ILLUMINANCE");
-    if (values < 0) values = gltf_attribute(raw.attributes, "COLOR_0");
-    builder_.illumination.resize(base + count, {NAN, NAN, NAN});
-    if (values < 0) return added;
-    auto light = gltf_floats(model_, values, 3);
-    if (!light.ok()) return malformed(where, light.status().message());
-    if (light->size() != 3 * count) {
-      return malformed(where, "has another number of colours than of positions");
+    const auto lit = add_gltf_light(model_, raw, {base, count}, builder_);
+    if (!lit.ok()) return malformed(where, lit.status().message());
+    if (*lit) {
+      lit_ranges_.emplace_back(base, base + count);
+      coloured_ += count;
     }
-    for (std::size_t i = 0; i < count; ++i) builder_.illumination[base + i] = three(*light, i);
-    lit_ranges_.emplace_back(base, base + count);
-    coloured_ += count;
     return added;
+  }
+
+  // Returns the set whose page is that of the primitive's uvs. In kept scenes, sets that a
+  // primitive lacks refer to the data of the new uvs, and only the set of these has its page told.
+  int page_set(const tinygltf::Primitive& raw, std::uint32_t material) const {
+    const RawMaterial& m = builder_.materials[material];
+    const int uvs = gltf_attribute(raw.attributes, fmt::format("TEXCOORD_{}", m.uv_set));
+    const auto told = [&](int set) { return builder_.uv_pages.aspect_of(m.name, set) > 0; };
+    if (told(m.uv_set)) return m.uv_set;
+    for (int set = 0; set < kMostUvSets; ++set)
+      if (told(set) && gltf_attribute(raw.attributes, fmt::format("TEXCOORD_{}", set)) == uvs)
+        return set;
+    return m.uv_set;
+  }
+
+  // If primitives of one material differ, the page of some of them is not told.
+  static void take_page_set(int set, RawMaterial& material) {
+    const bool agrees = material.page_set < 0 || material.page_set == set;
+    material.page_set = agrees ? set : material.uv_set;
   }
 
   Status add_texcoords(const tinygltf::Primitive& raw, Primitive& primitive) {
     const int set = builder_.materials[primitive.material].uv_set;
     const int accessor = gltf_attribute(raw.attributes, fmt::format("TEXCOORD_{}", set));
     if (accessor < 0) return {};
+    take_page_set(page_set(raw, primitive.material), builder_.materials[primitive.material]);
     const auto [at, is_new] = texcoords_.try_emplace(accessor);
     if (is_new) {
       auto uvs = gltf_floats(model_, accessor, 2);

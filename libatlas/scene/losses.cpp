@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "libatlas/scene/text_scanner.h"
 
 namespace atlas {
@@ -10,6 +12,12 @@ std::vector<std::string> Losses::lines() const {
   std::vector<std::string> result;
   for (const auto& [what, count] : counts_) result.push_back(fmt::format("{} x {}", count, what));
   return result;
+}
+
+void count_vertex_alpha(const Scene& scene, Losses& losses) {
+  const auto& values = scene.vertex_opacity;
+  const auto open = std::count_if(values.begin(), values.end(), [](float v) { return v != 1; });
+  losses.add(kVertexAlphaLoss, std::size_t(open));
 }
 
 bool is_opacity_line(const std::string& mtl_line) {

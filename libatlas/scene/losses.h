@@ -9,6 +9,9 @@
 
 namespace atlas {
 
+// The kind of loss that is alpha of vertices other than 1.
+inline constexpr const char* kVertexAlphaLoss = "values of vertices: alpha";
+
 class Losses {
  public:
   // `what` in the plural, for example "animations".
@@ -27,6 +30,9 @@ class Losses {
  private:
   LossCounts counts_;
 };
+
+// Adds the vertices whose alpha is not 1, for files that have no room for it.
+void count_vertex_alpha(const Scene& scene, Losses& losses);
 
 // Returns whether a line of an MTL is `d` with a fraction, which Material::opacity holds. It does
 // not hold `d -halo`, where the opacity depends on the view, and values that are no fraction.

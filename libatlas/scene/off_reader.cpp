@@ -5,9 +5,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cstring>
 #include <optional>
+#include <span>
 
 #include "libatlas/scene/file_bytes.h"
 #include "libatlas/scene/formats.h"
@@ -38,25 +40,38 @@ Status cut_short(const std::string& file, std::string_view what) {
 
 // Collects colours as illumination. If all are whole numbers and the largest is above 1 and at most
 // 255, they are divided by 255, as most programs write them. Otherwise they are used unchanged, as
-// Geomview and simulations write them.
+// Geomview and simulations write them. So is alpha, by itself.
 class Colours {
  public:
-  explicit Colours(SceneBuilder& builder) : values_(builder.illumination) {}
+  explicit Colours(SceneBuilder& builder) : builder_(builder) {}
 
-  void add(const double* rgb, bool whole) {
-    values_.push_back({float(rgb[0]), float(rgb[1]), float(rgb[2])});
+  // `rgba` are 3 or 4 numbers.
+  void add(std::span<const double> rgba, bool whole) {
+    builder_.illumination.push_back({float(rgba[0]), float(rgba[1]), float(rgba[2])});
     whole_ &= whole;
-    for (int c = 0; c < 3; ++c) largest_ = std::max(largest_, rgb[c]);
+    for (int c = 0; c < 3; ++c) largest_ = std::max(largest_, rgba[c]);
+    if (!builder_.wants_rest || rgba.size() < 4) return;
+    builder_.vertex_opacity.resize(builder_.illumination.size(), kNoAlpha);
+    builder_.vertex_opacity.back() = float(rgba[3]);
+    largest_alpha_ = std::max(largest_alpha_, rgba[3]);
   }
   void finish() {
-    if (!whole_ || largest_ <= 1 || largest_ > 255) return;
-    for (Vec3f& v : values_) v = {v.x / 255, v.y / 255, v.z / 255};
+    if (are_bytes(largest_))
+      for (Vec3f& v : builder_.illumination) v = {v.x / 255, v.y / 255, v.z / 255};
+    if (builder_.vertex_opacity.empty()) return;
+    builder_.vertex_opacity.resize(builder_.illumination.size(), kNoAlpha);
+    const float scale = are_bytes(largest_alpha_) ? 255 : 1;
+    for (float& v : builder_.vertex_opacity) v = v == kNoAlpha ? 1 : v / scale;
   }
 
  private:
-  std::vector<Vec3f>& values_;
+  static constexpr float kNoAlpha = -1;  // of vertices whose colour has three numbers
+
+  bool are_bytes(double largest) const { return whole_ && largest > 1 && largest <= 255; }
+
+  SceneBuilder& builder_;
   bool whole_ = true;
-  double largest_ = 0;
+  double largest_ = 0, largest_alpha_ = 0;
 };
 
 // Texture coordinates and normals are given per vertex.
@@ -172,7 +187,7 @@ class TextOff {
     builder_.positions.push_back({n[0], n[1], n[2]});
     if (layout_.normal && builder_.wants_normals)
       builder_.normals.push_back({float(n[3]), float(n[4]), float(n[5])});
-    if (layout_.colour) colours_.add(n + layout_.before_colour(), whole);
+    if (layout_.colour) colours_.add({n + layout_.before_colour(), std::size_t(colour)}, whole);
     const double* uv = n + layout_.before_colour() + colour;
     if (layout_.texture) builder_.texcoords.push_back({float(uv[0]), float(uv[1])});
     if (count > least + colour) {  // the header does not say what they mean
@@ -304,8 +319,9 @@ class BinaryOff {
         builder_.normals.push_back({number(at + 3), number(at + 4), number(at + 5)});
       at += std::size_t(layout_.before_colour());
       if (layout_.colour) {
-        const double rgb[3] = {number(at), number(at + 1), number(at + 2)};
-        colours.add(rgb, false);
+        colours.add(
+            std::array<double, 4>{number(at), number(at + 1), number(at + 2), number(at + 3)},
+            false);
         at += 4;
       }
       if (layout_.texture) builder_.texcoords.push_back({number(at), number(at + 1)});

@@ -155,13 +155,15 @@ class PlyParser {
         {{"s", "t"}, {"u", "v"}, {"texture_u", "texture_v"}, {"texture_s", "texture_t"}});
     const auto normal =
         builder_.wants_normals ? find_group({{"nx", "ny", "nz"}}) : std::vector<int>();
+    const auto alpha = builder_.wants_rest ? find_group({{"alpha"}}) : std::vector<int>();
+    const double opaque = alpha.empty() ? 1 : colour_scale(element_->properties[alpha[0]].type);
     double scale[3] = {1, 1, 1};
     for (std::size_t c = 0; c < rgb.size(); ++c) {
       scale[c] = colour_scale(element_->properties[rgb[c]].type);
     }
     begin();
     std::vector<int> read;
-    for (const std::vector<int>& group : {xyz, rgb, uv, normal})
+    for (const std::vector<int>& group : {xyz, rgb, uv, normal, alpha})
       read.insert(read.end(), group.begin(), group.end());
     PlyLosses losses(*element_, read, "vertices");
     std::vector<std::string> bad;  // places of the first unusable positions
@@ -178,6 +180,7 @@ class PlyParser {
         builder_.illumination.push_back({float(s[rgb[0]] * scale[0]), float(s[rgb[1]] * scale[1]),
                                          float(s[rgb[2]] * scale[2])});
       }
+      if (!alpha.empty()) builder_.vertex_opacity.push_back(float(s[alpha[0]] * opaque));
       if (!uv.empty()) builder_.texcoords.push_back({float(s[uv[0]]), float(s[uv[1]])});
       if (!normal.empty()) {
         builder_.normals.push_back({float(s[normal[0]]), float(s[normal[1]]), float(s[normal[2]])});

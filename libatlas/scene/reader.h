@@ -28,7 +28,8 @@ struct ReadOptions {
   // Keeps PNG and JPEG textures encoded, in Texture::encoded, for programs that only pass them on.
   bool encoded_textures = false;
   bool normals = false;  // true: reads the file's normals into Scene::normals
-  // Keeps what Scene has no arrays for, in Scene::source (glTF) and Material::mtl_lines (OBJ). All
+  // Keeps what Scene has no arrays for, in Scene::source (glTF) and Material::mtl_lines (OBJ), and
+  // reads Scene::vertex_opacity (alpha of PLY's and OFF's vertices and of glTF's COLOR_0). All
   // images of a glTF file are then textures, in the file's order. Scene::not_read counts what the
   // arrays lack in any case. An export to glTF refuses a scene with a source whose positions have
   // been changed, see Scene::source.

@@ -80,7 +80,13 @@ struct Scene {
   double metres_per_unit = 1;            // length of one scene unit
   std::vector<Vec3f> positions = {};     // finite, relative to origin
   std::vector<Vec3f> illumination = {};  // linear RGB per vertex, up to kMostLight; may be empty
-  std::vector<Vec2f> texcoords = {};     // finite; may lie outside [0, 1]
+  // Alpha of the vertices' colours, 0..1 per vertex; empty if all is 1, or it is not asked for
+  // (ReadOptions::rest). Exports that keep the scene pass it on. Lighting ignores it.
+  std::vector<float> vertex_opacity = {};
+  // What multiplies the textures of unlit materials, linear RGB, 0..1 per vertex: COLOR_0 of glTF,
+  // which is the illumination of other materials. Empty if all is 1. Lighting ignores it.
+  std::vector<Vec3f> unlit_colours = {};
+  std::vector<Vec2f> texcoords = {};        // finite; may lie outside [0, 1]
   std::vector<std::uint32_t> indices = {};  // 3 per triangle, into positions
   // 3 per triangle, into texcoords, or kNoTexcoord if the file gives none there; empty if no
   // triangle has any

@@ -72,6 +72,17 @@ void SceneBuilder::sanitise_values() {
   }
 }
 
+// Values beyond 0..1 have no meaning. They are left out, and counted.
+void SceneBuilder::sanitise_opacity() {
+  for (float& value : vertex_opacity) {
+    if (value >= 0 && value <= 1) continue;
+    value = 1;
+    ++not_read[kVertexAlphaLoss];
+  }
+  const auto opaque = [](float value) { return value == 1; };
+  if (std::all_of(vertex_opacity.begin(), vertex_opacity.end(), opaque)) vertex_opacity.clear();
+}
+
 // Values beyond 0..1 are no encoded colours.
 void SceneBuilder::decode_colours() {
   for (Vec3f& rgb : illumination)
@@ -245,7 +256,8 @@ void SceneBuilder::place_materials(const ReadOptions& options, Scene& scene) {
 
 void SceneBuilder::place_uv_aspects(LoadedScene& loaded) const {
   std::vector<double> aspects;
-  for (const RawMaterial& m : materials) aspects.push_back(uv_pages.aspect_of(m.name, m.uv_set));
+  for (const RawMaterial& m : materials)
+    aspects.push_back(uv_pages.aspect_of(m.name, m.page_set < 0 ? m.uv_set : m.page_set));
   if (aspects.empty()) aspects.push_back(uv_pages.aspect_of({}));
   loaded.uv_aspect = aspects[0];
   if (std::all_of(aspects.begin(), aspects.end(), [&](double a) { return a == aspects[0]; }))
@@ -268,6 +280,7 @@ Result<LoadedScene> SceneBuilder::finish(const ReadOptions& options, const Conte
                     why));
   }
   sanitise_values();
+  sanitise_opacity();
   if (options.srgb_colours && !linear_light) decode_colours();
   LoadedScene loaded;
   Scene& scene = loaded.scene;
@@ -294,6 +307,9 @@ Result<LoadedScene> SceneBuilder::finish(const ReadOptions& options, const Conte
   scene.triangle_material = std::move(triangle_material_);
   scene.triangle_object = std::move(triangle_object_);
   scene.illumination = std::move(illumination);
+  if (!unlit_colours.empty()) unlit_colours.resize(scene.positions.size(), {1, 1, 1});
+  scene.unlit_colours = std::move(unlit_colours);
+  scene.vertex_opacity = std::move(vertex_opacity);
   loaded.defects = std::move(defects);
   if (context.cancelled()) return Status::cancelled();
   return loaded;

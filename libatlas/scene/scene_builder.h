@@ -34,6 +34,9 @@ struct RawMaterial : Material {
   // for u and v.
   std::array<double, 3> uv_u{1, 0, 0}, uv_v{0, 1, 0};
   int uv_set = 0;  // which of the file's sets of texture coordinates they are
+  // The set whose page is that of all these texture coordinates, which may be another one that
+  // refers to the same data; -1: uv_set.
+  int page_set = -1;
 
   bool moves_uv() const {
     return uv_u != std::array<double, 3>{1, 0, 0} || uv_v != std::array<double, 3>{0, 1, 0};
@@ -64,8 +67,10 @@ class SceneBuilder {
   std::string file;               // for messages
   std::string illumination_file;  // for messages, if the illumination is another file's
   std::vector<Vec3d> positions;
-  std::vector<Vec3f> illumination;  // empty or 1 per vertex; checked by finish()
-  bool linear_light = false;        // whether the format says that the illumination is linear
+  std::vector<Vec3f> illumination;    // empty or 1 per vertex; checked by finish()
+  std::vector<float> vertex_opacity;  // empty or 1 per vertex; only filled if wants_rest is set
+  std::vector<Vec3f> unlit_colours;   // Scene::unlit_colours, for the first vertices or all
+  bool linear_light = false;          // whether the format says that the illumination is linear
   std::vector<Vec2f> texcoords;
   std::vector<Vec3f> normals;  // of any length; only filled if wants_normals is set
   std::vector<RawMaterial> materials;
@@ -181,6 +186,7 @@ class SceneBuilder {
   }
 
   void sanitise_values();
+  void sanitise_opacity();
   void decode_colours();
   Status place_positions(Scene& scene);
   void keep_used(Scene& scene);

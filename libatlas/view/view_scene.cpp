@@ -240,12 +240,22 @@ class Builder {
     return *hold_light_ && (m.unlit || shows_texture(m));
   }
 
+  // Returns the colour that textures multiply. A texture that only the caller calls unlit shows
+  // light, to which the vertices' own adds nothing.
+  Vec3f colour_of(const Material& m, std::uint32_t position) const {
+    if (scene_.unlit_colours.empty() || !m.unlit || !is_unlit(m) || !shows_texture(m))
+      return m.diffuse;
+    const Vec3f& factor = scene_.unlit_colours[position];
+    return {m.diffuse.x * factor.x, m.diffuse.y * factor.y, m.diffuse.z * factor.z};
+  }
+
   std::uint32_t vertex(std::uint32_t t, int k) {
     const std::uint32_t corner = 3 * t + std::uint32_t(k), p = scene_.indices[corner];
     const glm::vec3 n = corner_normal(corners_at_[welded_[p]], faces_, t, cosine_);
     const std::uint32_t material = scene_.triangle_material[t],
                         texcoord = textured_ ? scene_.texcoord_indices[corner] : kNone;
-    const CornerKey key{scene_.lit() ? p : welded_[p], texcoord, material, two_words(n.x, n.y),
+    const bool own_values = scene_.lit() || !scene_.unlit_colours.empty();
+    const CornerKey key{own_values ? p : welded_[p], texcoord, material, two_words(n.x, n.y),
                         two_words(n.z, 0)};
     std::uint32_t& vertex =
         first_.find(hash_words(key), [&](std::uint32_t v) { return keys_[v] == key; });
@@ -255,7 +265,7 @@ class Builder {
     view_.positions.push_back(scene_.positions[p]);
     view_.normals.push_back(from_glm(n));
     const Material& m = scene_.materials[material];
-    view_.colours.push_back(coloured_ ? scene_.illumination[p] : m.diffuse);
+    view_.colours.push_back(coloured_ ? scene_.illumination[p] : colour_of(m, p));
     if (emits_) view_.emission.push_back(plain_emission(m));
     if (view_.unlit == Unlit::some) view_.unlit_vertices.push_back(is_unlit(m));
     if (textured_)

@@ -20,7 +20,9 @@ enum class Unlit { none, some, all };
 struct ViewScene {
   // Per vertex; an array is empty where the scene has no such thing.
   std::vector<Vec3f> positions = {}, normals = {};
-  std::vector<Vec3f> colours = {};   // diffuse reflectance of the material, linear
+  // Diffuse reflectance of the material, linear; that of unlit ones with a texture is multiplied by
+  // Scene::unlit_colours.
+  std::vector<Vec3f> colours = {};
   std::vector<Vec3f> emission = {};  // of the material, unless a texture shapes it; 1 is white
   std::vector<Vec2f> texcoords = {};
   // Linear, as given; 1 / light_scale where a texture shows light, to which it adds nothing.

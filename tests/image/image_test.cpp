@@ -138,11 +138,11 @@ TEST(Image, ColoursUnderAlphaStayAsStored) {
   EXPECT_EQ(read_image8(folder / "a.png")->texels, image.texels);
 }
 
-// The codes 200, 100 and 50 are 0.5776, 0.1274 and 0.0319.
+// The codes 200, 100 and 50 are 0.5776, 0.1274 and 0.0319. OpenEXR stores them multiplied by alpha.
 TEST(Image, TexturesOfFloatsAreEncoded) {
   const TempFolder folder;
   ImageF linear(2, 1, 4);
-  const float texels[8] = {0.5776f, 0.1274f, 0.0319f, 0.5f, 0, 1, 0.0024f, 1};
+  const float texels[8] = {0.2888f, 0.0637f, 0.01595f, 0.5f, 0, 1, 0.0024f, 1};
   std::copy(texels, texels + 8, linear.texels.begin());
   ASSERT_TRUE(write_exr(folder / "a.exr", linear).ok());
   const auto exr = read_texture(folder / "a.exr");

@@ -144,6 +144,7 @@ TEST(ReportJson, FiguresOfPagesAreInTheirPlaces) {
   expect_in_place(r, {{"/packing/scale", &r.scale},
                       {"/packing/utilization", &r.utilization},
                       {"/packing/uv_utilization", &r.uv_utilization},
+                      {"/packing/least_side_share", &r.least_side_share},
                       {"/packing/opened_charts", &r.opened_charts},
                       {"/packing/border_texels", &r.gaps->border},
                       {"/packing/shared_border_texels", &r.gaps->near_after},

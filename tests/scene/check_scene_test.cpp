@@ -75,6 +75,21 @@ TEST(CheckScene, NamesArrayAndElement) {
          s.illumination.resize(4);
          s.illumination[1].y = nan;
        }},
+      {"unlit_colours has 3 values for 4", [](Scene& s) { s.unlit_colours.resize(3); }},
+      {"unlit_colours[3]",
+       [=](Scene& s) {
+         s.unlit_colours.resize(4);
+         s.unlit_colours[3].z = nan;
+       }},
+      {"vertex_opacity has 3 values for 4", [](Scene& s) { s.vertex_opacity.resize(3); }},
+      {"vertex_opacity[2] is nan",
+       [=](Scene& s) {
+         s.vertex_opacity = {1, 0, nan, 1};
+       }},
+      {"vertex_opacity[3] is 1.5",
+       [](Scene& s) {
+         s.vertex_opacity = {1, 0, 1, 1.5f};
+       }},
       {"origin", [=](Scene& s) { s.origin.x = nan; }},
       {"metres_per_unit is inf",
        [](Scene& s) { s.metres_per_unit = std::numeric_limits<double>::infinity(); }},

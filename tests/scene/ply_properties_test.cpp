@@ -180,11 +180,12 @@ TEST(Ply, CountsPropertiesThatASceneCannotHold) {
   ASSERT_TRUE(kept.ok()) << kept.status().message();
   EXPECT_EQ(kept->scene.not_read, (LossCounts{{"textures of materials", 1},
                                               {"values of faces: red", 2},
-                                              {"values of vertices: alpha", 2},
                                               {"values of vertices: quality", 3}}));
+  EXPECT_EQ(kept->scene.vertex_opacity, (std::vector<float>{1, 254 / 255.0f, 0}));
   const auto read = read_scene(path, {}, {});
   ASSERT_TRUE(read.ok()) << read.status().message();
   EXPECT_EQ(read->scene.not_read, LossCounts{});
+  EXPECT_TRUE(read->scene.vertex_opacity.empty());
 }
 
 }  // namespace

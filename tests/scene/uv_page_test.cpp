@@ -126,16 +126,18 @@ TEST(UvPage, IsReadFromTheExtrasOfAGltf) {
   EXPECT_EQ(aspect("text"), 0);
 }
 
-// The shape of one set's page is not that of the set that a material uses.
+// The shape of one set's page is not that of the set that a material uses, unless both refer to the
+// same data.
 TEST(UvPage, OfAGltfIsThatOfTheSetThatIsRead) {
   const TempFolder folder;
   Gltf g;
   const int positions = g.floats(kSquare, "VEC3", 3),
-            uvs = g.floats({0, 0, 1, 0, 1, 1, 0, 1}, "VEC2", 2);
+            uvs = g.floats({0, 0, 1, 0, 1, 1, 0, 1}, "VEC2", 2),
+            others = g.floats({0, 0, 1, 0, 1, 1, 0, 1}, "VEC2", 2);
   const int indices = g.indices(std::vector<std::uint16_t>{0, 1, 2, 0, 2, 3});
   g.j["images"] = {{{"uri", "none.png"}}};
   g.j["textures"] = {{{"source", 0}}};
-  g.single({{"attributes", {{"POSITION", positions}, {"TEXCOORD_0", uvs}, {"TEXCOORD_1", uvs}}},
+  g.single({{"attributes", {{"POSITION", positions}, {"TEXCOORD_0", others}, {"TEXCOORD_1", uvs}}},
             {"indices", indices},
             {"material", 0}});
   g.j["asset"]["extras"] = {{"info", {of_uv_set(1, uv_page_text(40, 10))}}};
@@ -145,6 +147,9 @@ TEST(UvPage, OfAGltfIsThatOfTheSetThatIsRead) {
     const auto loaded = load_glb(folder, g);
     ASSERT_TRUE(loaded.ok()) << loaded.status().message();
     EXPECT_EQ(loaded->uv_aspect, set == 1 ? 4 : 0);
+    Gltf shared = g;
+    shared.j["meshes"][0]["primitives"][0]["attributes"]["TEXCOORD_0"] = uvs;
+    EXPECT_EQ(load_glb(folder, shared)->uv_aspect, 4);
   }
 }
 
