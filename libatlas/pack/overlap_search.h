@@ -19,7 +19,7 @@ struct OverlapSearchOptions {
 // Pushes the pieces of `nest` into a strip that is a little lower, and then searches for places at
 // which they do not overlap: pieces that do are moved, one at a time, to the place where their
 // overlaps weigh least, and the weight of each pair that still overlaps grows. This is guided local
-// search (Egeblad et al. 2007), with the sampling and the weights of Gardeyn and Wauters (2025), on
+// search (Egeblad et al. 2007), with the sampling and the weights of Gardeyn et al. (2025), on
 // cells (Umetani and Murakami 2022). Each success replaces `nest` by the lower layout.
 //
 // `nest` must hold all pieces that have cells, without overlaps. The search is deterministic.

@@ -1,5 +1,5 @@
 // Internal: by how much each pair of masks overlaps, and what its overlap weighs in a guided local
-// search, in which the weights of overlaps that persist grow (Gardeyn and Wauters 2025).
+// search, in which the weights of overlaps that persist grow (Gardeyn et al. 2025).
 #pragma once
 
 #include <cstdint>
