@@ -30,11 +30,13 @@ struct Arguments {
 struct StageEntry {
   const char* name;
   void (*run)(const StageRun&);
+  bool needs_light;
 };
 constexpr StageEntry kStages[] = {
-    {"baseline", bench_baseline}, {"charts", bench_charts},   {"downsizing", bench_downsizing},
-    {"grouping", bench_grouping}, {"packing", bench_packing}, {"baking", bench_baking},
-    {"simplify", bench_simplify}, {"export", bench_export},
+    {"baseline", bench_baseline, false},    {"charts", bench_charts, false},
+    {"downsizing", bench_downsizing, true}, {"grouping", bench_grouping, true},
+    {"packing", bench_packing, true},       {"baking", bench_baking, true},
+    {"simplify", bench_simplify, false},    {"export", bench_export, true},
 };
 
 void describe(CLI::App& app, Arguments& a) {
@@ -75,10 +77,19 @@ bool wanted(const Arguments& a, const std::string& stage) {
   return a.stages.empty() || std::find(a.stages.begin(), a.stages.end(), stage) != a.stages.end();
 }
 
+// Returns whether a stage is run. Without light, those that need it are only if they are named, and
+// then fail.
+bool runs(const Arguments& a, const StageEntry& stage, const Staged& staged) {
+  if (!wanted(a, stage.name)) return false;
+  if (!stage.needs_light || staged.scene().lit() || !a.stages.empty()) return true;
+  fmt::print("{:<11} {:<18} left out: the mesh has no light\n", stage.name, staged.name);
+  return false;
+}
+
 // Each stage begins with the mesh alone, without what other stages made from it.
 void run_stages(const Arguments& a, const StageRun& run, const std::vector<Rival>& rivals) {
   for (const StageEntry& stage : kStages) {
-    if (!wanted(a, stage.name)) continue;
+    if (!runs(a, stage, run.staged)) continue;
     in_own_process(run.staged.row(stage.name, "standard", true), run.done,
                    [&](const TakeRow& take) {
                      stage.run({run.staged, run.repeats, run.sweep, take});

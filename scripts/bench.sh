@@ -37,17 +37,18 @@ run() {
 }
 
 if [ "$size" = small ]; then
-  sweep="cabin:20000 scan:20000"; budget="--atlases 2 --atlas-size 1024"; repeats=1
+  sweep="cabin:20000 scan:20000"; packed="genus:20000 assembly:3000"; budget="--atlases 2 --atlas-size 1024"; repeats=1
   sizes="cabin:40000 scan:40000 cabin:20000"; sizes_budget="$budget"
-  components="assembly:10000 assembly:40000"
+  components="assembly:10000 assembly:40000 rough:10000 rough:30000"
   threads="scan:40000"; counted="scan:5000"
   rivals="sphere:20000 assembly:20000"; small_rivals="sphere:2000"
   leak="cabin:50000"; texels="20 10 5"; full=""; shadows="--small"
 else
-  sweep="cabin:100000 scan:100000"; budget="--atlases 8 --atlas-size 2048"; repeats=2
+  sweep="cabin:100000 scan:100000"; packed="genus:100000 scan:100000 assembly:10000"; budget="--atlases 8 --atlas-size 2048"; repeats=2
   sizes="cabin:10000 cabin:300000 cabin:1000000 cabin:3000000 scan:30000 scan:300000 scan:1000000"
   sizes_budget="--atlases 50"
   components="assembly:30000 assembly:300000 assembly:1000000 soup:30000 soup:300000"
+  components="$components rough:30000 rough:100000 rough:300000"
   threads="cabin:300000"; counted="scan:5000"
   rivals="sphere:100000 assembly:100000 genus:100000 scan:1000000 terrain:1000000 assembly:1000000"
   small_rivals="sphere:5000 assembly:5000 genus:5000"
@@ -95,7 +96,12 @@ blender_rival() {
   run "$bin/atlas-bench" --work $threads --standard $sizes_budget --threads 1 2 \
       --stages baseline charts downsizing packing baking simplify export \
       -o "$results/threads.json"
-  run "$bin/atlas-bench" --work $sweep $budget --repeats "$repeats" -o "$results/settings.json"
+  # From 1000 charts on, as the cabin has, boxes are filled in one way whatever the setting.
+  run "$bin/atlas-bench" --work $sweep $budget --repeats "$repeats" \
+      --stages baseline charts downsizing grouping baking simplify export \
+      -o "$results/settings.json"
+  run "$bin/atlas-bench" --work $packed $budget --repeats "$repeats" --stages packing \
+      -o "$results/packing.json"
   run "$bin/atlas-bench" --work $counted --atlases 1 --atlas-size 512 --instructions \
       --stages baseline charts downsizing grouping simplify -o "$results/instructions.json"
   run "$bin/atlas-bench-leak" --work "$leak" --texel $texels \

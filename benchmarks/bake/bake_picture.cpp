@@ -2,11 +2,14 @@
 // it, once as the mesh holds the light and once for each baking method.
 #include <fmt/format.h>
 
+#include <CLI/CLI.hpp>
 #include <cmath>
 #include <cstdio>
+#include <string>
 #include <utility>
 #include <vector>
 
+#include "apps/common/options.h"
 #include "apps/common/program.h"
 #include "benchmarks/light_leak/baked_surface.h"
 #include "benchmarks/light_leak/picture.h"
@@ -92,7 +95,7 @@ Image8 draw_light(const LuminanceSampler& sampler, const ToneMapping& tone) {
   });
 }
 
-Status draw_methods(const char* path) {
+Status draw_methods(const std::string& path) {
   const Scene scene = make_floor();
   const LuminanceSampler sampler(scene, Quantity::luminance);
   const ChartSet charts = one_chart(scene);
@@ -126,11 +129,13 @@ Status draw_methods(const char* path) {
 }
 
 int main_of(int argc, char** argv) {
-  if (argc != 2) {
-    app::print(stderr, "usage: atlas-bench-bake-picture PICTURE.png\n");
-    return 2;
-  }
-  const Status status = draw_methods(argv[1]);
+  CLI::App app(
+      "Draws a sunlit floor as the mesh holds the light and as each baking method shows it.",
+      "atlas-bench-bake-picture");
+  std::string picture;
+  app.add_option("picture", picture, "PNG file to write")->required();
+  if (const int code = app::parse(app, argc, argv); code >= 0) return code;
+  const Status status = draw_methods(picture);
   if (!status.ok()) app::print_error("atlas-bench-bake-picture", status.message());
   return status.ok() ? 0 : 1;
 }

@@ -18,7 +18,8 @@ int main(int argc, char** argv) {
   CompareOptions o;
   app.add_option("base", base_path, "the older file")->required();
   app.add_option("head", head_path, "the newer one")->required();
-  app.add_option("--quality", o.quality_relative, "relative growth of an error that counts")
+  app.add_option("--quality", o.quality_relative,
+                 "relative growth of an error that counts; of stretches, of what exceeds 1")
       ->check(atlas::app::not_negative())
       ->capture_default_str();
   app.add_option("--quality-least", o.quality_absolute, "and the absolute one")
@@ -49,6 +50,8 @@ int main(int argc, char** argv) {
     fmt::print(stderr, "atlas-bench-compare: {}\n", file->status().message());
     return 2;
   }
+  if (machine_count(std::vector{*base, *head}) > 1)
+    fmt::print("The files are of different machines or builds: their times cannot be compared.\n");
   const auto found = compare(*base, *head, o);
   constexpr const char* kNames[] = {"quality",      "missing", "failed",
                                     "instructions", "time",    "memory"};

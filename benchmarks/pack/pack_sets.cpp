@@ -99,6 +99,15 @@ struct Totals {
   int strips = 0, invalid = 0;
 };
 
+// Prints what is filled of all pages, and of all but the last one if there are several: the last
+// one holds what is left over.
+void print_bins(const std::string& name, const atlas::PackResult& result, double spent) {
+  fmt::print("{} bins {} bound {} fill {:.4f}", name, result.pages.size(), result.page_lower_bound,
+             result.utilization);
+  if (result.pages.size() > 1) fmt::print(" but-the-last {:.4f}", result.fill_without_last);
+  fmt::print(" cpu {:.4f}\n", spent);
+}
+
 // Packs an instance, adds its figures to the totals, and prints them if each instance is wanted.
 void run(Instance in, Arguments& arguments, Totals& totals) {
   if (arguments.strip) in.page.height = 0;
@@ -124,9 +133,7 @@ void run(Instance in, Arguments& arguments, Totals& totals) {
     if (arguments.each) std::printf("%s gap %.2f cpu %.3f\n", in.name.c_str(), gap, spent);
   } else {
     totals.bins += result->pages.size();
-    if (arguments.each)
-      std::printf("%s bins %zu bound %u fill %.4f cpu %.4f\n", in.name.c_str(),
-                  result->pages.size(), result->page_lower_bound, result->fill_without_last, spent);
+    if (arguments.each) print_bins(in.name, *result, spent);
   }
 }
 
@@ -141,7 +148,9 @@ int main(int argc, char** argv) {
       ->check(CLI::ExistingPath);
   app.add_flag("--rotate", options.allow_rotation, "allow quarter turns");
   app.add_flag("--strip", arguments.strip, "open the pages upwards");
-  app.add_flag("--each", arguments.each, "a line an instance");
+  app.add_flag(
+      "--each", arguments.each,
+      "a line an instance; fill: of all pages, but-the-last: of all pages but the last one");
   const std::map<std::string, atlas::PackEngine> engines{
       {"automatic", atlas::PackEngine::automatic},
       {"skyline-bl", atlas::PackEngine::skyline_bottom_left},

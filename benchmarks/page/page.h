@@ -8,8 +8,9 @@
 
 namespace atlas::bench {
 
-// The rows, fits and checks of all files are combined. Machines are listed per file, each with its
-// command.
+// Files with checks make up the stability page, with their rows; all others the performance page.
+// Rows, fits and checks of the files of one page are combined. Machines are listed per file, each
+// with its command.
 struct PageInput {
   std::vector<Results> files;
 };

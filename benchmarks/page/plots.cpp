@@ -61,10 +61,11 @@ double spread(const std::vector<Series>& all, double PlotPoint::*coordinate) {
 // Returns the name on an axis for a row's first value.
 std::string axis_name(const std::string& value) {
   static const std::map<std::string, std::string> names = {
-      {"empty", "empty share of the pages"}, {"imbalance", "largest group over the mean, less 1"},
-      {"l2_minus_1", "L2 stretch less 1"},   {"mean", "mean error of the visibility"},
-      {"rms", "rms error, display values"},  {"seam", "seams / square root of the area"},
-      {"slip", "largest slip, texels"}};
+      {"empty", "empty share of the pages"},
+      {"l2_minus_1", "L2 stretch less 1"},
+      {"mean", "mean error of the visibility"},
+      {"rms", "rms error, display values"},
+      {"seam", "seams / square root of the area"}};
   const auto name = names.find(value);
   return name == names.end() ? value : name->second;
 }
@@ -187,12 +188,20 @@ Plot settings_plot(const std::string& stage, const Meshes& meshes) {
   return plot;
 }
 
+// Whether the settings of a stage can be compared by its error. Those of the simplifier set the
+// error itself, those of grouping are different problems or give the same groups.
+bool trades_error_for_time(const std::string& stage) {
+  for (const char* other : {"light_leak", "baseline", "simplify", "grouping"})
+    if (stage == other) return false;
+  return true;
+}
+
 // Makes one plot for every stage that was run with several settings, with a panel per mesh, and one
 // plot of the programs.
 void error_plots(const Results& results, std::vector<Plot>& plots) {
   std::map<std::string, Meshes> stages;
   for (const Row& row : results.rows) {
-    if (row.stage == "light_leak" || row.stage == "baseline") continue;
+    if (!trades_error_for_time(row.stage)) continue;
     if (row.stage != "unwrap" && !usable(row)) continue;
     Meshes& meshes = stages[row.stage];
     const auto same = std::find_if(meshes.begin(), meshes.end(),

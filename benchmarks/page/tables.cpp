@@ -73,6 +73,8 @@ std::pair<const Row*, const Row*> largest_exports(const Results& all) {
 std::string figure(double value) {
   if (std::isfinite(value) && std::abs(value) >= 1000 && std::abs(value) < 1e12)
     return fmt::format("{:.0f}", value);
+  // Stretches begin at 1: what tells settings apart are the digits behind it.
+  if (value > 1 && value < 2) return fmt::format("{:.4f}", value);
   return fmt::format("{:.4g}", value);
 }
 
@@ -256,46 +258,6 @@ void export_table(const Results& all, Document& page) {
   page.table(header, rows);
 }
 
-void threads_table(const Results& all, Document& page) {
-  std::vector<int> counts;
-  std::map<std::pair<std::string, std::string>, std::map<int, const Row*>> table;
-  std::vector<std::pair<std::string, std::string>> order;
-  for (const Row& row : all.rows) {
-    if (row.threads == 0 || row.instructions > 0 || !row.failure.empty()) continue;
-    if (row.setting != "standard" && row.stage != "baseline") continue;
-    const auto key = std::pair(row.stage, row.mesh);
-    if (!table.count(key)) order.push_back(key);
-    table[key].emplace(row.threads, &row);
-    if (std::find(counts.begin(), counts.end(), row.threads) == counts.end())
-      counts.push_back(row.threads);
-  }
-  if (counts.size() < 2) return;
-  std::sort(counts.begin(), counts.end());
-  Cells header{"stage", "mesh"};
-  for (const int n : counts) header.push_back(fmt::format("wall s, {}", n));
-  for (const int n : counts) header.push_back(fmt::format("CPU s, {}", n));
-  header.insert(header.end(), {"speed-up", "JSON"});
-  std::vector<Cells> rows;
-  for (const auto& key : order) {
-    const auto& by_count = table[key];
-    if (by_count.size() != counts.size()) continue;
-    Cells cells{key.first, key.second};
-    for (const int n : counts) cells.push_back(fmt::format("{:.2f}", by_count.at(n)->wall_seconds));
-    for (const int n : counts) cells.push_back(fmt::format("{:.2f}", by_count.at(n)->cpu_seconds));
-    const double last = by_count.at(counts.back())->wall_seconds;
-    cells.push_back(
-        last > 0 ? fmt::format("{:.2f}", by_count.at(counts.front())->wall_seconds / last) : "-");
-    cells.push_back(by_count.at(counts.front())->source);
-    rows.push_back(cells);
-  }
-  page.heading("Threads");
-  page.paragraph(
-      "The same work on one thread and on several; the results are the same bytes. Wall clocks "
-      "mean "
-      "what they say on a machine that does nothing else only.");
-  page.table(header, rows);
-}
-
 void instructions_table(const Results& all, Document& page) {
   std::vector<Cells> rows;
   for (const Row& row : all.rows)
@@ -326,8 +288,8 @@ void rivals_table(const Results& all, Document& page) {
       cells.push_back(fmt::format("{:.2f}", row.wall_seconds));
       for (const std::string& name : names) cells.push_back(figure(row.value(name)));
     } else {
-      cells.insert(cells.end(), {row.failure, fmt::format("{:.2f}", row.cpu_seconds),
-                                 fmt::format("{:.2f}", row.wall_seconds)});
+      // The CPU time of processes that a timeout ended is not known.
+      cells.insert(cells.end(), {row.failure, "", fmt::format("{:.2f}", row.wall_seconds)});
     }
     cells.resize(header.size() - 1);
     cells.push_back(row.source);
@@ -338,7 +300,10 @@ void rivals_table(const Results& all, Document& page) {
   page.paragraph(
       "The same OBJ file for every program, everything judged by the same evaluator "
       "(tests/support/atlas_measure) on pages of the size that its program made. Reading and "
-      "writing files is part of the time. See benchmarks/rivals/README.md for how each is called.");
+      "writing files is part of the time. The others are programs that are started, and stopped at "
+      "a "
+      "timeout; libatlas is called as a library. See benchmarks/rivals/README.md for how each is "
+      "called.");
   page.table(header, rows);
 }
 

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
+#include <cstring>
 #include <filesystem>
 #include <fstream>
 
@@ -52,6 +53,19 @@ std::string last_line(const fs::path& path) {
   for (std::string text; std::getline(file, text);)
     if (!text.empty()) last = ": " + text.substr(0, 120);
   return last;
+}
+
+// Returns how a rival failed, or "" if it did not. `timeout` reports 124, or 137 where it had to
+// kill; programs may end so by themselves, and run out of memory, which only the time tells apart.
+std::string failure_of(int status, double wall, const Rival& rival, const fs::path& complaints) {
+  const int code = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+  if (code == 0) return "";
+  if ((code == 124 || code == 137) && wall >= rival.timeout)
+    return fmt::format("timed out after {} s", rival.timeout);
+  if (code > 128)  // how a shell reports a signal
+    return fmt::format("ended by signal {} ({}){}", code - 128, ::strsignal(code - 128),
+                       last_line(complaints));
+  return fmt::format("ended with code {}{}", code, last_line(complaints));
 }
 
 Row unwrap_row(const StageRun& run, const std::string& name) {
@@ -123,13 +137,9 @@ void bench_rival(const StageRun& run, const Rival& rival) {
                                    .c_str());
   row.cpu_seconds = children_cpu() - cpu;
   row.wall_seconds = wall_seconds() - wall;
-  const int exit_code = WIFEXITED(code) ? WEXITSTATUS(code) : -1;
-  if (exit_code == 124 || exit_code == 137)
-    row.failure = fmt::format("timed out after {} s", rival.timeout);
-  else if (exit_code > 128)  // how a shell reports a signal
-    row.failure = fmt::format("crashed by signal {}{}", exit_code - 128, last_line(complaints));
-  else if (exit_code != 0)
-    row.failure = fmt::format("ended with code {}{}", exit_code, last_line(complaints));
+  row.failure = failure_of(code, row.wall_seconds, rival, complaints);
+  if (!row.failure.empty())
+    row.cpu_seconds = 0;  // of processes that were ended with their shell, nobody knows it
   else
     judge(out, page_of(out, rival.page), row);
   run.done(row);

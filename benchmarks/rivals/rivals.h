@@ -19,11 +19,13 @@ struct Rival {
 // Parses "name=command {in} {out}". Errors: bad_option.
 Result<Rival> parse_rival(const std::string& text);
 
-// Measures one row of stage "unwrap". CPU seconds are those of the child processes. Beyond the
-// timeout, the row states that and has no figures.
+// Measures one row of stage "unwrap". CPU seconds are those of the child processes. A rival that
+// exceeds the timeout, ends with a code other than 0 or by a signal has a row that says which, with
+// wall seconds only.
 void bench_rival(const StageRun& run, const Rival& rival);
 
-// Measures libatlas under the same conditions: reading, charts, packing and writing an OBJ.
+// Measures libatlas doing the same work: reading, charts, packing and writing an OBJ. It is called
+// as a library, in a process that has started already, and without a timeout.
 void bench_ours(const StageRun& run, int page);
 
 }  // namespace atlas::bench

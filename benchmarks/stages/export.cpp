@@ -37,9 +37,6 @@ std::vector<Setting> settings(const StageRun& run) {
   options.bake_method = BakeMethod::average;
   options.shifts = 1;  // with more shifts, averaging takes longer than the default
   list.push_back({"fast", true, options});
-  options = base;
-  options.simplify = false;
-  list.push_back({"no simplify", false, options});
   return list;
 }
 

@@ -1,7 +1,5 @@
-#include <fmt/format.h>
-
-#include "benchmarks/support/staged.h"
 #include "libatlas/pack/grouping.h"
+#include "benchmarks/support/staged.h"
 
 namespace atlas::bench {
 
@@ -19,8 +17,6 @@ void bench_grouping(const StageRun& run) {
   const GroupingOptions defaults;
   std::vector<Setting> settings{{"standard", staged.settings.pages, defaults.refine_work}};
   if (run.sweep) {
-    for (const std::uint32_t n : {2u, 50u})
-      settings.push_back({fmt::format("N = {}", n), n, defaults.refine_work});
     for (const std::uint64_t work : {std::uint64_t(0), std::uint64_t(1) << 26})
       settings.push_back({work ? "refine 2^26" : "refine 0", staged.settings.pages, work});
   }

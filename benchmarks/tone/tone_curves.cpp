@@ -1,12 +1,16 @@
 // Prints luminance and the display value of each tone operator, for the plot of tone_curves.gp.
+#include <CLI/CLI.hpp>
 #include <cmath>
 #include <cstdio>
 #include <vector>
 
+#include "apps/common/options.h"
 #include "libatlas/texture/tone.h"
 
-int main() {
+int main(int argc, char** argv) {
   using namespace atlas;
+  CLI::App app("Prints luminance and the display value of each tone operator.", "atlas-bench-tone");
+  if (const int code = app::parse(app, argc, argv); code >= 0) return code;
   LuminanceStatistics interior;  // a lit room: most of it dim, with some lamps
   interior.lit_area = 1;
   interior.log_average = 0.3;

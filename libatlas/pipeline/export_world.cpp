@@ -16,6 +16,7 @@
 #include "libatlas/pipeline/bake_pages.h"
 #include "libatlas/pipeline/fill_pages.h"
 #include "libatlas/pipeline/layout_options.h"
+#include "libatlas/pipeline/least_room.h"
 #include "libatlas/pipeline/longest_sides.h"
 #include "libatlas/pipeline/page_layout.h"
 #include "libatlas/pipeline/part_gaps.h"
@@ -166,10 +167,13 @@ class Export {
 
   // Fills sizing_.
   Result<TextureResult> sized_textures(const TextureOptions& texture, const Context& context) {
-    const Result<std::vector<double>> densities = wanted_densities(*light_, texture, context);
+    Result<std::vector<double>> densities = wanted_densities(*light_, texture, context);
     if (!densities.ok()) return densities.status();
     const PageBudget budget{texture, options_};
     sizing_ = sizing_factor(charts_, *densities, budget);
+    for (double& density : *densities) density *= sizing_;
+    const LayoutOptions layout = layout_options(charts_, options_, true);
+    if (Status s = check_least_room(charts_, *densities, layout); !s.ok()) return s;
     Result<TextureResult> sized = size_chart_textures(*light_, scaled(texture, sizing_), context);
     if (!sized.ok()) return sized;
     const double refilled = refilled_factor(sizing_, *sized, budget);

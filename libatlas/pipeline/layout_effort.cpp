@@ -6,10 +6,10 @@
 #include <cmath>
 #include <utility>
 
-#include "libatlas/core/counted.h"
 #include "libatlas/core/progress.h"
 #include "libatlas/pack/fit_search.h"
 #include "libatlas/pipeline/layout_problem.h"
+#include "libatlas/pipeline/least_room.h"
 
 namespace atlas {
 namespace {
@@ -27,14 +27,6 @@ Status check(const WantedCharts& wanted) {
                                 density.x, density.y));
   }
   return {};
-}
-
-// Returns the error for charts that do not fit, in the words of this stage.
-Status no_room(const ChartSet& charts, const LayoutOptions& options) {
-  return {ErrorCode::no_solution,
-          fmt::format("{} charts do not fit {} of {} x {} even as small as allowed ({})",
-                      charts.charts.size(), counted(options.pages, "page"), options.page_size,
-                      options.page_size, options.remedy)};
 }
 
 // Packs by boxes, and by outlines if options.outlines allows them and they may win.

@@ -1,38 +1,16 @@
 // Tests result files, fits, fronts and comparisons with invented numbers.
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
 #include <fstream>
 
-#include "benchmarks/page/page.h"
 #include "benchmarks/support/compare.h"
 #include "benchmarks/support/pareto.h"
-#include "tests/benchmarks/rows.h"
+#include "tests/benchmarks/some_results.h"
 
 namespace atlas::bench {
 namespace {
-
-namespace fs = std::filesystem;
-
-struct TempFolder {
-  fs::path path = fs::temp_directory_path() / ("bench_test_" + std::to_string(::getpid()));
-  TempFolder() { fs::create_directories(path); }
-  ~TempFolder() { fs::remove_all(path); }
-};
-
-Results some_results() {
-  const char* argv[] = {"/usr/bin/atlas-bench", "--work", "sphere:10 000"};
-  Results results;
-  results.machine = describe_machine(3, argv);
-  for (const double n : {1e4, 1e5, 1e6})
-    results.rows.push_back(row(std::uint64_t(n), 2e-5 * std::pow(n, 1.07), 5));
-  results.fits = fit_exponents(results.rows, 10000);
-  results.checks.push_back({"scale", "x 2", "drift", 0.1, 1, "note"});
-  return results;
-}
 
 TEST(Results, SurviveTheirFile) {
   const TempFolder folder;
@@ -208,6 +186,64 @@ TEST(Compare, SeesMissingFailedAndBrokenRows) {
   EXPECT_EQ(found[3].kind, Regression::failed);
 }
 
+// Returns the regressions if one value of a row changes from `base` to `head`.
+std::vector<Regression> changed(const char* stage, const char* name, double base, double head) {
+  Results before;
+  before.rows.push_back(row(1000, 1, 5));
+  before.rows[0].stage = stage;
+  before.rows[0].values = {{name, base}};
+  Results after = before;
+  after.rows[0].values.back().second = head;
+  return compare(before, after, {});
+}
+
+TEST(Compare, LooksAtEveryValueThatHasABetterWay) {
+  EXPECT_EQ(changed("charts", "flips", 0, 1).size(), 1u);
+  EXPECT_EQ(changed("unwrap", "without_uv", 0, 5000).size(), 1u);
+  EXPECT_EQ(changed("unwrap", "util", 0.75, 0.5).size(), 1u);
+  EXPECT_EQ(changed("unwrap", "util", 0.5, 0.75).size(), 0u);
+  EXPECT_EQ(changed("export", "psnr", 50, 40).size(), 1u);
+  EXPECT_EQ(changed("export", "psnr", 50, 60).size(), 0u);
+  EXPECT_EQ(changed("unwrap", "p999", 1.10, 1.11).size(), 1u) << "a tenth more than perfection";
+  EXPECT_EQ(changed("baking", "p999", 0.100, 0.101).size(), 0u) << "a hundredth more error";
+  EXPECT_EQ(changed("shadows", "ssim", 0.995, 0.990).size(), 1u) << "twice as far from equal";
+  EXPECT_EQ(changed("charts", "solve_cpu", 1, 9).size(), 0u);
+  EXPECT_EQ(changed("light_leak", "edge_m", 1, 9).size(), 0u);
+  const std::vector<Regression> found = changed("charts", "l2", 1.0010, 1.0020);
+  ASSERT_EQ(found.size(), 1u);
+  EXPECT_EQ(found[0].kind, Regression::quality);
+  EXPECT_EQ(found[0].what, "charts | sphere:1000 | standard: l2 1.001 -> 1.002");
+}
+
+TEST(Compare, SeesMoreChartsAndTriangles) {
+  Results base;
+  base.rows.push_back(row(1000, 1, 5));
+  base.rows[0].size_out = 10;
+  Results head = base;
+  head.rows[0].size_out = 12;
+  const std::vector<Regression> found = compare(base, head, {});
+  ASSERT_EQ(found.size(), 1u);
+  EXPECT_EQ(found[0].what, "charts | sphere:1000 | standard: charts 10 -> 12");
+  EXPECT_TRUE(compare(head, base, {}).empty());
+  base.rows[0].stage = head.rows[0].stage = "baseline";
+  EXPECT_TRUE(compare(base, head, {}).empty());
+}
+
+// A value whose better way nobody stated would never be compared.
+TEST(Compare, KnowsEveryPublishedValue) {
+  std::size_t rows = 0;
+  for (const auto& entry : fs::directory_iterator(ATLAS_PUBLISHED_RESULTS)) {
+    const Result<Results> results = load(entry.path());
+    ASSERT_TRUE(results.ok()) << results.status().message();
+    for (const Row& r : results->rows) {
+      ++rows;
+      for (const auto& [name, value] : r.values)
+        EXPECT_NE(better_of(name), Better::unknown) << r.key() << ": " << name;
+    }
+  }
+  EXPECT_GT(rows, 100u);
+}
+
 TEST(Pareto, KeepsWhatNothingBeats) {
   using Point = std::pair<double, double>;
   const auto x = [](const Point& p) { return p.first; };
@@ -215,82 +251,6 @@ TEST(Pareto, KeepsWhatNothingBeats) {
   const std::vector<Point> points{{3, 1}, {1, 5}, {2, 6}, {2, 2}, {4, 1}, {1, 7}};
   EXPECT_EQ(pareto_front(points, x, y), (std::vector<Point>{{1, 5}, {2, 2}, {3, 1}}));
   EXPECT_TRUE(pareto_front(std::vector<Point>{}, x, y).empty());
-}
-
-// Returns the page in Markdown after saving and loading the results as JSON, or an empty string if
-// that fails.
-std::string written_page(const Results& results, const fs::path& folder) {
-  if (!save(results, folder / "all.json").ok()) return {};
-  const Result<Results> loaded = load(folder / "all.json");
-  if (!loaded.ok() || !write_page({{*loaded}}, folder).ok()) return {};
-  std::ifstream file(folder / "performance.md");
-  return {std::istreambuf_iterator<char>(file), {}};
-}
-
-TEST(Page, TablesForThreadsInstructionsAndRivals) {
-  const TempFolder folder;
-  Results results = some_results();
-  for (const int threads : {1, 2}) {
-    results.rows.push_back(row(5000, 7, 1));
-    results.rows.back().threads = threads;
-    results.rows.back().wall_seconds = 7.0 / threads;
-  }
-  results.rows.push_back(row(6000, 0, 1));
-  results.rows.back().instructions = 123e6;
-  results.rows.push_back(row(7000, 60, 1));
-  results.rows.back().stage = "unwrap";
-  results.rows.back().setting = "slow program";
-  results.rows.back().failure = "timed out after 60 s";
-  const std::string page = written_page(results, folder.path);
-  for (const char* text : {"## Threads", "| 2.00 | all.json:", "## Instructions", "| 123.00 |",
-                           "slow program | 7000 | timed out after 60 s", "## Stage: charts"})
-    EXPECT_NE(page.find(text), std::string::npos) << text;
-  EXPECT_EQ(page.find("Stage: unwrap"), std::string::npos);
-  // Rows of the thread series and rows with counted instructions are not in the stage's own table.
-  const std::string stage = page.substr(page.find("## Stage: charts"));
-  EXPECT_EQ(stage.find("sphere:5000 "), std::string::npos);
-  EXPECT_EQ(stage.find("sphere:6000 "), std::string::npos);
-}
-
-// If a mesh takes more than twelve times "parse + normals", the page names the parts that take most
-// of it.
-TEST(Page, TellsWhichPartsOfChartsTakeTheTime) {
-  const TempFolder folder;
-  Results results;
-  for (const double seconds : {1.0, 4.0}) {
-    results.rows.push_back(row(1000000, 0.1, 1));
-    results.rows.back().mesh = seconds > 2 ? "scan:1000000" : "terrain:1000000";
-    Row charts = results.rows.back();
-    results.rows.back().stage = "baseline";
-    results.rows.back().setting = "parse + normals";
-    charts.cpu_seconds = seconds;
-    for (const char* part : {"topology_cpu", "cells_cpu", "solve_cpu"})
-      charts.values.emplace_back(part, 0.01 * seconds);
-    charts.values.emplace_back("merging_cpu", 0.6 * seconds);
-    results.rows.push_back(charts);
-  }
-  const std::string page = written_page(results, folder.path);
-  EXPECT_NE(page.find("scan:1000000, 40.0 times: 60 % merging"), std::string::npos);
-  EXPECT_EQ(page.find("terrain:1000000, 10.0 times"), std::string::npos);
-  const std::string parts = page.substr(page.find("| mesh | charts, s |"));
-  EXPECT_NE(parts.find("| scan:1000000 | 4.00 | 0.4 |"), std::string::npos) << parts;
-  EXPECT_NE(parts.find("| 14.8 | all.json:"), std::string::npos) << "what no part counts";
-  const std::string stage = page.substr(page.find("## Stage: charts"));
-  EXPECT_EQ(stage.find("merging_cpu"), std::string::npos);
-}
-
-TEST(Page, HoldsEveryRowAndCheck) {
-  const TempFolder folder;
-  Results results = some_results();
-  results.checks.push_back({"scale", "x 3", "drift", 2, 1, ""});
-  ASSERT_TRUE(write_page({{results}}, folder.path).ok());
-  std::ifstream index(folder.path / "index.html"), stability(folder.path / "stability.md");
-  const std::string page{std::istreambuf_iterator<char>(index), {}};
-  const std::string stable{std::istreambuf_iterator<char>(stability), {}};
-  for (const char* text : {"sphere:10000", "sphere:1000000", "1.07", "atlas-bench --work"})
-    EXPECT_NE(page.find(text), std::string::npos) << text;
-  EXPECT_NE(stable.find("2 figures, 1 beyond their bound"), std::string::npos);
-  EXPECT_NE(stable.find("EXCEEDED"), std::string::npos);
 }
 
 }  // namespace

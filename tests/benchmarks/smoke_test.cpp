@@ -8,6 +8,7 @@
 #include <atomic>
 #include <cmath>
 #include <cstdlib>
+#include <filesystem>
 
 #include "benchmarks/light_leak/light_leak.h"
 #include "benchmarks/rivals/rivals.h"
@@ -19,8 +20,8 @@ namespace atlas::bench {
 namespace {
 
 TEST(Work, MeetsItsSizeAndIsValid) {
-  for (const char* kind : {"sphere", "scan", "torus", "terrain", "assembly", "fasteners", "genus",
-                           "soup", "needles"}) {
+  for (const char* kind : {"sphere", "scan", "rough", "torus", "terrain", "assembly", "fasteners",
+                           "genus", "soup", "needles"}) {
     const Result<LoadedScene> made = make_work(std::string(kind) + ":20000", {});
     ASSERT_TRUE(made.ok()) << made.status().message();
     const Scene& scene = made->scene;
@@ -31,6 +32,9 @@ TEST(Work, MeetsItsSizeAndIsValid) {
   }
   for (const char* bad : {"sphere", "sphere:", "sphere:x", "sphere:3", "ball:1000", "sphere:1000 "})
     EXPECT_FALSE(make_work(bad, {}).ok()) << bad;
+  const std::string complaint = make_work("ball:1000", {}).status().message();
+  for (const char* kind : {"cabin", "file:", "needles"})
+    EXPECT_NE(complaint.find(kind), std::string::npos) << complaint;
 }
 
 TEST(Stages, GiveFiguresOnSmallWork) {
@@ -116,14 +120,15 @@ TEST(Rivals, AreJudgedTimedOutAndReported) {
   const StageRun run{staged, 1, false, [&](Row row) { rows.push_back(std::move(row)); }};
   bench_ours(run, 256);
   for (const char* text : {"copies=cp {in} {out}", "slow=sleep 20; cp {in} {out}",
-                           "broken=false {in} {out}", "crashing=kill -SEGV $$; : {in} {out}"}) {
+                           "broken=false {in} {out}", "crashing=kill -SEGV $$; : {in} {out}",
+                           "killed=kill -KILL $$; : {in} {out}", "own=exit 124; : {in} {out}"}) {
     Result<Rival> rival = parse_rival(text);
     ASSERT_TRUE(rival.ok());
-    rival->timeout = 0.3;
+    rival->timeout = rival->name == "slow" ? 0.3 : 60;
     rival->page = 256;
     bench_rival(run, *rival);
   }
-  ASSERT_EQ(rows.size(), 5u);
+  ASSERT_EQ(rows.size(), 7u);
   EXPECT_TRUE(rows[0].failure.empty()) << rows[0].failure;
   EXPECT_EQ(rows[0].value("overlap"), 0);
   EXPECT_EQ(rows[0].value("without_uv"), 0);
@@ -132,6 +137,8 @@ TEST(Rivals, AreJudgedTimedOutAndReported) {
   EXPECT_NE(rows[2].failure.find("timed out"), std::string::npos) << rows[2].failure;
   EXPECT_NE(rows[3].failure.find("code 1"), std::string::npos) << rows[3].failure;
   EXPECT_NE(rows[4].failure.find("signal 11"), std::string::npos) << rows[4].failure;
+  EXPECT_NE(rows[5].failure.find("signal 9"), std::string::npos) << rows[5].failure;
+  EXPECT_NE(rows[6].failure.find("code 124"), std::string::npos) << rows[6].failure;
   EXPECT_FALSE(parse_rival("no command").ok());
   EXPECT_FALSE(parse_rival("x=unwrap {in}").ok());
 }
@@ -202,6 +209,26 @@ TEST(CommandLine, NonsenseIsRefusedBeforeAnythingRuns) {
                                 " >/dev/null 2>&1";
     EXPECT_EQ(WEXITSTATUS(std::system(command.c_str())), 2) << words;
   }
+}
+
+// Stages that need light are left out of an unlit mesh, unless they are asked for by name.
+TEST(CommandLine, AnUnlitMeshIsNoFailure) {
+  const test::Shape shape = test::icosphere(1);
+  Scene scene;
+  scene.positions = shape.positions;
+  scene.indices = shape.indices;
+  const auto path = std::filesystem::temp_directory_path() /
+                    ("bench_unlit_" + std::to_string(::getpid()) + ".obj");
+  ASSERT_TRUE(write_plain_obj(scene, path, false).ok());
+  const auto code = [&](const std::string& words) {
+    const std::string command = std::string(ATLAS_BENCH_PROGRAM) +
+                                " --standard --work file:" + path.string() + words +
+                                " >/dev/null 2>&1";
+    return WEXITSTATUS(std::system(command.c_str()));
+  };
+  EXPECT_EQ(code(""), 0);
+  EXPECT_EQ(code(" --stages baking"), 1);
+  std::filesystem::remove(path);
 }
 
 // A plane with a straight shadow edge at x = 1/2, which is one mesh cell wide.

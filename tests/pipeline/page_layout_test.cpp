@@ -11,6 +11,7 @@
 
 #include "libatlas/pipeline/export_world.h"
 #include "libatlas/pipeline/layout_effort.h"
+#include "libatlas/pipeline/least_room.h"
 #include "tests/pipeline/lit_scene.h"
 #include "tests/scene/temp_folder.h"
 #include "tests/support/shapes.h"
@@ -42,6 +43,26 @@ ChartSet boxes_of(const std::vector<Vec2d>& sizes) {
     chart.distortion.uv_area = size.x * size.y;
   }
   return charts;
+}
+
+// What is certain is never more than what packing needs, for boxes and outlines of any size.
+TEST(Layout, TheLeastRoomIsNeverMoreThanPackingNeeds) {
+  for (const Vec2d size : {Vec2d{1, 1}, Vec2d{40, 1}, Vec2d{40, 30}, Vec2d{500, 500}}) {
+    const ChartSet charts = boxes_of(std::vector<Vec2d>(200, size));
+    const std::vector<Vec2d> densities(200, {1, 1});
+    LayoutOptions options{.pages = 1, .page_size = 32, .padding = 2, .alignment = 4};
+    while (!lay_out_pages(charts, densities, options, {}).ok()) options.page_size *= 2;
+    const std::vector<double> same(200, 1.0);
+    EXPECT_TRUE(check_least_room(charts, same, options).ok()) << size.x << " x " << size.y;
+    EXPECT_GT(least_texels(charts, same, options), 200 * 12) << "of the gutters alone";
+    options.page_size /= 4;  // a sixteenth of a page that is large enough
+    const Status refused = check_least_room(charts, same, options);
+    if (size.y >= 30) {
+      EXPECT_EQ(refused.code(), ErrorCode::no_solution) << size.x;
+      EXPECT_EQ(refused.message(),
+                lay_out_pages(charts, densities, options, {}).status().message());
+    }
+  }
 }
 
 TEST(Layout, TheFillingDensityCoversAllTexels) {

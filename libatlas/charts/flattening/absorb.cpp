@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <queue>
 #include <span>
@@ -30,6 +31,12 @@ struct Patience {
 // around a large one (208 meshes), in 3 % less time; 16 removes hardly more.
 constexpr Patience kSmooth{3, 4, 0.45, 60, 6};
 constexpr Patience kFast{2, 0.25, 0.45, 0, 2};
+// With ChartPreset::fast, unions that cost more than this share of the mesh's triangles are not
+// tried: large cells leave a speck here and there beside a large chart, all of which would be
+// flattened again. On a rough height field of a million triangles that took a sixth of the time.
+// Fourteen models came out in as many charts, and eight noisy meshes in 9 % more, for 12 % less
+// time.
+constexpr double kFastUnion = 0.1;
 constexpr Patience kBest{6, 4, 0.45, kNoIndex, 6};
 // Scan noise divides charts that need not be divided. A work of 3 with four neighbours, and only
 // fragments and small charts tried, left 7 % more charts in a twelfth less time (60 noisy meshes).
@@ -100,7 +107,10 @@ class Absorber {
         room_(room_in(input.flatten.options.max_stretch)),
         seam_worth_(merge_options(input.flatten.options.max_stretch).seam_worth),
         crease_cosine_(cosine_of(input.flatten.options.crease_degrees)),
-        work_(patience_.work * double(topology_.triangle_count())) {
+        work_(patience_.work * double(topology_.triangle_count())),
+        most_cost_(input.flatten.options.preset == ChartPreset::fast
+                       ? kFastUnion * double(all_triangles())
+                       : std::numeric_limits<double>::infinity()) {
     auto& label = input_.partition.chart;
     for (std::uint32_t k = 0; k < charts_.size(); ++k) {
       for (const std::uint32_t t : charts_[k].triangles) label[t] = k;
@@ -136,6 +146,10 @@ class Absorber {
     return options.preset == ChartPreset::best ? kBest : kSmooth;
   }
 
+  // The triangles of the whole mesh, of which these charts may be a piece.
+  std::size_t all_triangles() const {
+    return std::max(topology_.whole_triangles, topology_.triangle_count());
+  }
   double piece_area(std::uint32_t k) const { return piece_area_[charts_[k].piece(topology_)]; }
   double piece_target(std::uint32_t k) const { return piece_target_[charts_[k].piece(topology_)]; }
   bool small(std::uint32_t k) const { return area_[k] < kSmallArea * piece_area(k); }
@@ -144,9 +158,8 @@ class Absorber {
     const FlatChart& chart = charts_[k];
     const std::size_t size = chart.triangles.size();
     if (size < patience_.few || small(k)) return true;
-    const std::size_t all = std::max(topology_.whole_triangles, topology_.triangle_count());
-    return chart.fragment &&
-           (!topology_.calm_normals.empty() || double(size) <= kSmallShare * double(all));
+    return chart.fragment && (!topology_.calm_normals.empty() ||
+                              double(size) <= kSmallShare * double(all_triangles()));
   }
 
   std::uint32_t absorb(std::uint32_t k) {
@@ -238,7 +251,9 @@ class Absorber {
     if (!promising(k, {into, 0, glue}, joint)) return false;
     const std::size_t size = joint.triangle_count();
     const bool little = size > kLittle * std::min(a.triangles.size(), b.triangles.size());
-    work_ -= (little ? kLittleWork : 1) * double(size);
+    const double cost = (little ? kLittleWork : 1) * double(size);
+    if (cost > most_cost_) return false;
+    work_ -= cost;
     std::vector<std::uint8_t> seams;
     for (const FlatChart* chart : {&a, &b}) {
       for (const std::uint32_t t : chart->triangles) seams.push_back(input_.partition.seams[t]);
@@ -360,7 +375,7 @@ class Absorber {
   Patience patience_;
   double most_l2_, room_, seam_worth_;
   double crease_cosine_;
-  double work_;
+  double work_, most_cost_;  // what is left for all unions, and the most that one may cost
   // One per chart: whether it is tried by itself, also after it has taken in others.
   std::vector<std::uint8_t> candidate_;
   std::vector<double> area_;  // one per chart: surface area

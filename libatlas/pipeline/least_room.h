@@ -1,0 +1,26 @@
+// Internal: what is certain of the room that charts need, before their light has been sampled.
+#pragma once
+
+#include <span>
+
+#include "libatlas/charts/charts.h"
+#include "libatlas/core/status.h"
+#include "libatlas/pipeline/page_layout.h"
+
+namespace atlas {
+
+// Returns the texels that the charts take on pages at least, with their gutters, however far
+// textures are halved and however small packing makes them. `densities` are the texels per unit of
+// full textures, one per chart, > 0; sides beyond the page's do not count.
+double least_texels(const ChartSet& charts, std::span<const double> densities,
+                    const LayoutOptions& options);
+
+// Returns no_solution if that is more than the pages hold. Sampling textures of charts that cannot
+// fit took most of the time of such an export.
+Status check_least_room(const ChartSet& charts, std::span<const double> densities,
+                        const LayoutOptions& options);
+
+// Returns the error for charts that do not fit, in the words of these options.
+Status no_room(const ChartSet& charts, const LayoutOptions& options);
+
+}  // namespace atlas
