@@ -29,7 +29,7 @@ constexpr std::uint64_t kLayouts = 20;  // layouts of one start
 constexpr std::uint64_t kSearchWork = 320'000'000;
 // Words for each of the kSlidStarts fullest starts, which are made lower by letting charts overlap
 // for a while.
-constexpr std::uint64_t kOverlapWork = 20'000'000;
+constexpr std::uint64_t kOverlapWork = 10'000'000;
 // Maximum number of doublings: `best` doubles kLayouts, kSearchWork and kOverlapWork each round.
 constexpr std::uint32_t kMostDoublings = 4;
 constexpr int kSlides = 2;  // down and left; a third slide gains nothing
