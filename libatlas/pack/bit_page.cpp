@@ -127,6 +127,12 @@ void BitPage::grow(std::int32_t rows) {
   if (rows <= rows_) return;
   // Rows of cleared pages are used again. Shifted reads may go beyond the last row.
   const std::size_t needed = static_cast<std::size_t>(rows) * empty_.size() + 2 * stride_;
+  // Memory that is reserved but never written is not resident. Without this, old and new rows of a
+  // large page would take memory together whenever the page grows.
+  constexpr std::size_t kLarge = 1 << 17;  // words
+  const auto side = static_cast<std::size_t>(std::min(height_, width_ + width_ / 4));
+  const std::size_t square = side * empty_.size() + 2 * stride_;
+  if (bits_.capacity() == 0 && square >= kLarge) bits_.reserve(square);
   if (bits_.size() < needed) bits_.resize(needed);
   for (; rows_ < rows; ++rows_) std::copy(empty_.begin(), empty_.end(), row(0, rows_));
   longest_.resize(static_cast<std::size_t>(rows), width_);

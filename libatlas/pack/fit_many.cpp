@@ -104,21 +104,20 @@ class ManyCharts {
     options.cell = grid_.cell;
     options.directions = grid_.directions;
     options.page = {side_, side_};
+    options.keep_tests = false;  // each piece is placed once
     return options;
   }
 
   // Rasterises the charts that are not paired.
   std::vector<Piece> lone_pieces(std::span<const double> factors,
                                  std::vector<std::uint32_t>& lone) const {
-    std::vector<ChartOutline> outlines;
-    std::vector<double> own_factors;
     for (std::uint32_t i = 0; i < paired_.size(); ++i) {
-      if (paired_[i]) continue;
-      lone.push_back(i);
-      outlines.push_back(charts_.outlines[i]);
-      own_factors.push_back(factors[i]);
+      if (!paired_[i]) lone.push_back(i);
     }
-    return make_pieces(outlines, piece_options(own_factors), context_);
+    if (lone.empty()) return {};
+    PieceOptions options = piece_options(factors);
+    options.only = lone;
+    return make_pieces(charts_.outlines, options, context_);
   }
 
   // Packs all charts at this scale into strips as wide as a page.

@@ -71,17 +71,17 @@ class PagePress {
     const double wanted = wanted_scale() > fitted.scale ? wanted_scale() : 0;
     if (kMostRedrawn * balanced_scale() < fitted.scale || kMostGained * balanced_scale() < wanted)
       return false;
-    for (Group& g : groups_) {
-      draw_fully(g);
-      if (!(g.page.scale > 0)) return false;
-    }
+    draw_tightest();
+    if (!(common_scale() > 0)) return false;
+    if (wanted > 0) draw_others();
     return !(kMostExchanged * balanced_scale() < wanted);
   }
 
   // Exchanges charts between the tightest page and others, with at most this many attempts.
   void exchange(std::size_t attempts) {
     for (; attempts > 0 && !context_.cancelled(); --attempts) {
-      const std::optional<Exchange> chosen = best_exchange();
+      std::optional<Exchange> chosen = best_exchange();
+      if (!chosen && draw_others()) chosen = best_exchange();
       if (!chosen) return;
       const auto& [from, to, out, in, gain] = *chosen;
       tried_.insert({from, to, out, in});
@@ -89,6 +89,7 @@ class PagePress {
       if (!changed) continue;
       groups_[from] = (*changed)[0];
       groups_[to] = (*changed)[1];
+      draw_tightest();
       std::erase_if(tried_, [&, a = from, b = to](const auto& t) {
         return std::get<0>(t) == a || std::get<1>(t) == a || std::get<0>(t) == b ||
                std::get<1>(t) == b;
@@ -187,9 +188,10 @@ class PagePress {
            !are_slivers(own, options_);
   }
 
-  // Makes one more draw of the group's page. Returns false if none is worthwhile, because the page
-  // is full, or because it is unlikely to reach this scale. Exchanges ask for the same charts again
-  // and again, so what was drawn for a set of charts is kept.
+  // Makes one more draw of the group's page, which ends early if it is unlikely to reach this
+  // scale. Returns false if none is worthwhile, because the page is full or unlikely to reach the
+  // scale. Exchanges ask for the same charts again and again, so what was drawn for a set of charts
+  // is kept.
   bool draw(Group& group, double scale = 0) {
     PressedPage& page = drawn_[group.charts];
     const double side = options_.page_size;
@@ -199,7 +201,9 @@ class PagePress {
     const bool wanted =
         page.draws == 0 || (!alone && worth_another_draw(page.draws, fill, wanted_fill));
     if (wanted && !context_.cancelled()) {
-      draw_again(outlines_of(group), options_, context_, page);
+      FitSearchOptions one_page = options_;
+      one_page.wanted_fill = scale * scale * group.area / (side * side);
+      draw_again(outlines_of(group), one_page, context_, page);
       group.page = page;
       return true;
     }
@@ -207,9 +211,21 @@ class PagePress {
     return false;
   }
 
-  void draw_fully(Group& group) {
-    while (draw(group)) {
+  // Draws the tightest page again, as long as that is worthwhile, until it is not the tightest any
+  // more, and so on. More draws of the other pages would not enlarge the common scale.
+  void draw_tightest() {
+    while (draw(groups_[tightest()])) {
     }
+  }
+
+  // Draws all pages again as long as that is worthwhile. Looser pages have room for more exchanges.
+  // Returns whether any page was drawn.
+  bool draw_others() {
+    bool any = false;
+    for (Group& g : groups_) {
+      while (draw(g)) any = true;
+    }
+    return any;
   }
 
   // Draws the page until its scale exceeds `scale`. Returns false if it never does.
@@ -258,7 +274,8 @@ class PagePress {
   }
 
   // Returns both pages with the charts exchanged, or nothing if the scale of one of them is not
-  // larger than that of the tightest page was.
+  // larger than that of the tightest page was. The looser page is drawn first: it gets more to
+  // hold, and mostly decides.
   std::optional<std::array<Group, 2>> exchanged(const Exchange& e) {
     const double least = kLeastGain * groups_[e.from].page.scale;
     std::array<Group, 2> changed;
@@ -271,11 +288,10 @@ class PagePress {
       g.area = old.area - area_of(lost) + area_of(got);
       return draw_beyond(least, g);
     };
-    if (!take(changed[0], groups_[e.from], e.out, e.in) ||
-        !take(changed[1], groups_[e.to], e.in, e.out)) {
+    if (!take(changed[1], groups_[e.to], e.in, e.out) ||
+        !take(changed[0], groups_[e.from], e.out, e.in)) {
       return std::nullopt;
     }
-    for (Group& g : changed) draw_fully(g);
     return changed;
   }
 

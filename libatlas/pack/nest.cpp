@@ -75,15 +75,15 @@ Piece make_piece(const ChartOutline& shape, double factor, const PieceOptions& o
     }
   }
   piece.masks = std::move(masks);
-  complete(piece);
+  complete(piece, options.keep_tests);
   return piece;
 }
 
 }  // namespace
 
-void complete(Piece& piece) {
+void complete(Piece& piece, bool keep_tests) {
   for (const Mask& m : piece.masks) {
-    piece.tests.push_back(test_order(m));
+    if (keep_tests) piece.tests.push_back(test_order(m));
     piece.centers.push_back(center_height(m));
     piece.lifts.push_back(0.5 * m.height + 0.5 * piece.centers.back());
   }
@@ -98,11 +98,14 @@ void complete(Piece& piece) {
 
 std::vector<Piece> make_pieces(std::span<const ChartOutline> shapes, const PieceOptions& options,
                                const Context& context) {
-  std::vector<Piece> pieces(shapes.size());
-  parallel_for(context, shapes.size(), 4, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i)
-      pieces[i] = make_piece(
+  const bool all = options.only.empty();
+  std::vector<Piece> pieces(all ? shapes.size() : options.only.size());
+  parallel_for(context, pieces.size(), 4, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t k = begin; k < end; ++k) {
+      const std::size_t i = all ? k : options.only[k];
+      pieces[k] = make_piece(
           shapes[i], options.factors.empty() ? options.factor : options.factors[i], options);
+    }
   });
   return pieces;
 }
@@ -208,6 +211,7 @@ class PlaceSearch {
       const auto lift = static_cast<std::int32_t>(std::floor(piece.lifts[k]));
       const std::int32_t foot = last.lowest(mask);
       if (foot > page.height() - mask.height) continue;
+      if (piece.tests.empty()) tests_.push_back(test_order(mask));
       feet_[count_++] = {k, lift, foot, page.height() - mask.height, 0, 0, {}};
     }
   }
@@ -221,7 +225,7 @@ class PlaceSearch {
       std::uint64_t& here = queue_[static_cast<std::size_t>(height) % kQueue];
       for (; here != 0 && !place.placed; here &= here - 1) {
         const auto k = static_cast<std::size_t>(std::countr_zero(here));
-        if (feet_[k].height() == height && visit(feet_[k], place)) found_ = k;
+        if (feet_[k].height() == height && visit(k, place)) found_ = k;
         if (feet_[k].row > feet_[k].last)
           --searching;
         else
@@ -256,8 +260,9 @@ class PlaceSearch {
 
   // Returns whether the foot may stand on its row. If not, it is moved to the next row that has to
   // be examined.
-  bool visit(Foot& f, NestPlace& place) {
-    const MaskTests& tests = piece_.tests[f.direction];
+  bool visit(std::size_t k, NestPlace& place) {
+    Foot& f = feet_[k];
+    const MaskTests& tests = tests_.empty() ? piece_.tests[f.direction] : tests_[k];
     if (f.known == 0) {
       f.likely = page_.likely_feet(tests, f.row);
       f.known = 64;
@@ -290,6 +295,7 @@ class PlaceSearch {
   const Piece& piece_;
   BitPage& page_;
   LastPlaces& last_;
+  std::vector<MaskTests> tests_;  // one per foot, if the piece has none
   std::array<Foot, kMostDirections> feet_;
   std::size_t count_ = 0, found_ = 0;
   std::array<std::uint64_t, kQueue> queue_{};  // bit k: foot k waits for this height

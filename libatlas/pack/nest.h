@@ -16,9 +16,9 @@ namespace atlas::pack {
 // degrees.
 struct Piece {
   std::vector<Mask> masks;
-  std::vector<MaskTests> tests;
-  std::vector<Vec2d> origins;   // see RasterOptions; empty for coarse pieces
-  std::vector<double> centers;  // height of each mask's centre of mass
+  std::vector<MaskTests> tests;  // one per mask, or none; see PieceOptions::keep_tests
+  std::vector<Vec2d> origins;    // see RasterOptions; empty for coarse pieces
+  std::vector<double> centers;   // height of each mask's centre of mass
   // A direction's lift is half the mask's height plus half the height of its centre. The height of
   // a place, by which places are compared, is the row of its foot plus the lift.
   std::vector<double> lifts;
@@ -42,10 +42,16 @@ struct PieceOptions {
   // The page in cells. A shape gets no mask in a direction in which it exceeds the page. 0 x 0: no
   // limit.
   Extent page;
+  // The shapes that are rasterised, by index, in this order; empty: all.
+  std::span<const std::uint32_t> only;
+  // Whether pieces keep the tests of their masks, which take about as much memory as the masks
+  // themselves. If not, place_pieces() makes them anew for each piece that it places. This takes no
+  // more time in all if pieces are only placed once.
+  bool keep_tests = true;
 };
 
-// Sets what follows from the masks: tests, centers, lifts and by_fraction.
-void complete(Piece& piece);
+// Sets what follows from the masks: centers, lifts and by_fraction, and the tests if they are kept.
+void complete(Piece& piece, bool keep_tests);
 
 // Rasterises the shapes in all directions. Quarter turns are made by turning masks, which is exact.
 // Without the page as a limit, the memory that masks take grows with the length of the shapes.

@@ -205,6 +205,7 @@ PairPiece make_pair_piece(const ScaledCharts& charts, const ChartPair& pair,
   const std::array factors{charts.factors[pair.first], charts.factors[pair.second]};
   PieceOptions own = options;
   own.factors = factors;
+  own.keep_tests = false;
   // One thread: the caller makes many pairs at once.
   const std::vector<Piece> pieces = make_pieces(outlines, own, Context{.threads = 1});
   PairPiece joined;
@@ -226,7 +227,7 @@ PairPiece make_pair_piece(const ScaledCharts& charts, const ChartPair& pair,
     joined.parts[k] = {PairPart{{x, y, a.width, a.height}, in_a},
                        PairPart{{x + dx, y + dy, b.width, b.height}, in_b}};
   }
-  complete(joined.piece);
+  complete(joined.piece, options.keep_tests);
   return joined;
 }
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 
 #include "libatlas/core/clock.h"
 #include "libatlas/core/parallel.h"
@@ -23,6 +24,10 @@ constexpr double kMostRedrawn = 1.045, kMostRedrawnTwice = 1.025;
 // Only few starts are worth pressing, because the layout on cells nearly determines how well its
 // page can be pressed. More layouts gain more than pressing more starts in the same time.
 constexpr std::size_t kRoughStarts = 4, kThoroughStarts = 2;
+
+// Factors by which pressing and settling enlarge the charts of the largest start at most, in 19 of
+// 20 draws, and by which they do after rough pressing.
+constexpr double kMostByPressing = 1.045, kMostByThorough = 1.005;
 
 struct Effort {
   double first_step, last_step;
@@ -62,14 +67,17 @@ class Press {
   }
 
   // Makes a draw: random starts, of which the best are pressed and settled.
-  void draw(PressedPage& best) {
-    std::vector<PressStart> starts = starts_.make(best.draws++);
+  // Gives up once a page of the scale `least` is out of reach.
+  void draw(PressedPage& best, double least = 0) {
+    std::vector<PressStart> starts = starts_.make(best.draws++, least / kMostByPressing);
     for (const PressStart& s : starts) {
       best.layouts += s.layouts;
       best.work += s.work;
     }
     if (!alone()) {
+      if (!may_reach(least / kMostByPressing, starts)) return;
       press_best(starts, kRoughStarts, kRough);
+      if (!may_reach(least / kMostByThorough, starts)) return;
       press_best(starts, kThoroughStarts, kThorough);
     }
     settle_best(starts, best);
@@ -77,6 +85,13 @@ class Press {
 
  private:
   bool alone() const { return pressed_.size() <= 1; }
+
+  // Returns whether a start's charts have at least this scale.
+  bool may_reach(double least, const std::vector<PressStart>& starts) const {
+    return least == 0 || std::any_of(starts.begin(), starts.end(), [&](const PressStart& s) {
+             return !s.poses.empty() && starts_.scale_on_page(s.page) >= least;
+           });
+  }
 
   // Returns copies of the outlines of the charts that are pressed; nothing if all are.
   std::vector<ChartOutline> without_specks() const {
@@ -262,7 +277,10 @@ PressedPage press_outlines(std::span<const ChartOutline> outlines, const FitSear
 
 void draw_again(std::span<const ChartOutline> outlines, const FitSearchOptions& options,
                 const Context& context, PressedPage& page) {
-  Press(outlines, options, context).draw(page);
+  double area = 0;
+  for (const ChartOutline& o : outlines) area += o.area;
+  const double least = options.page_size * std::sqrt(options.wanted_fill / area);
+  Press(outlines, options, context).draw(page, least);
 }
 
 bool worth_another_draw(std::uint32_t draws, double fill, double wanted_fill) {

@@ -58,8 +58,9 @@ PressedPage press_outlines(std::span<const ChartOutline> outlines, const FitSear
                            const Context& context);
 
 // These do what press_outlines does, one draw at a time, for callers that compare pages and need
-// few of them in full. draw_again makes the next draw of a page. worth_another_draw returns whether
-// one is worthwhile, by the rule that press_outlines uses for all presets but `best`.
+// few of them in full. draw_again makes the next draw of a page; it ends early, and leaves the page
+// as it was, once options.wanted_fill is out of reach. worth_another_draw returns whether one is
+// worthwhile, by the rule that press_outlines uses for all presets but `best`.
 void draw_again(std::span<const ChartOutline> outlines, const FitSearchOptions& options,
                 const Context& context, PressedPage& page);
 bool worth_another_draw(std::uint32_t draws, double fill, double wanted_fill);

@@ -8,6 +8,7 @@
 
 #include "libatlas/core/parallel.h"
 #include "libatlas/core/random.h"
+#include "libatlas/pack/overlap_search.h"
 
 namespace atlas::pack {
 namespace {
@@ -31,11 +32,18 @@ constexpr std::size_t kMostStarts = 20;
 constexpr std::array kLegs{1 / 3.0, 2 / 3.0, 1.0};
 constexpr std::array kAllAtOnce{1.0};
 constexpr std::array kLongLegs{1 / 32.0, 1 / 16.0, 1 / 8.0, 1.0};
+// Factor by which the last two thirds of the search make charts larger at most.
+constexpr double kMostBySearch = 1.005;
 constexpr std::size_t kLeastLeft = 4, kFewCharts = 5;
 // Words examined by all starts together, 2 ns each.
 constexpr std::uint64_t kSearchWork = 160'000'000;
 constexpr std::uint64_t kLayouts = 32;  // layouts of one start
-// Maximum number of doublings: `best` doubles both kSearchWork and kLayouts each round.
+// Of the starts of a round, so many are made lower by letting charts overlap for a while, with this
+// work in words for each. Twice the work fills 0.1 points more and takes a quarter of all time
+// more.
+constexpr std::size_t kLowered = 4;
+constexpr std::uint64_t kOverlapWork = 10'000'000;
+// Maximum number of doublings: `best` doubles kSearchWork, kLayouts and kOverlapWork each round.
 constexpr std::uint32_t kMostDoublings = 4, kFirstDoublings = 2;
 constexpr std::uint32_t kDirections = 24;
 // The number of cells across a page: normally, for many charts, and from the second draw on. Finer
@@ -73,7 +81,7 @@ PressStarts::PressStarts(std::span<const ChartOutline> outlines, const FitSearch
   draw();
 }
 
-std::vector<PressStart> PressStarts::make(std::uint32_t round) {
+std::vector<PressStart> PressStarts::make(std::uint32_t round, double least) {
   draw_pieces(round > 0 ? kFineCells : outlines_.size() < kManyCharts ? kCells : kCellsOfMany);
   const std::size_t n = std::max<std::size_t>(1, outlines_.size());
   const std::size_t count =
@@ -81,7 +89,7 @@ std::vector<PressStart> PressStarts::make(std::uint32_t round) {
   if (n == 1) return {alone()};
   std::vector<Runner> runners;
   for (std::size_t k = 0; k < count; ++k) runners.push_back(runner(k, count, round));
-  race(runners, round);
+  if (race(runners, round, least)) lower_fullest(runners, round);
   std::vector<PressStart> starts;
   for (Runner& r : runners) starts.push_back(std::move(r.start));
   return starts;
@@ -101,24 +109,64 @@ std::span<const double> PressStarts::legs(std::uint32_t round) const {
   return kLongLegs;
 }
 
+double PressStarts::scale_on_page(const SqueezePage& page) const {
+  const double side = std::max(page.width, page.height);
+  return side > 0 ? scale_ * options_.page_size / side : 0;
+}
+
+// Runs these searches until this share of their limits is used up, and sorts them, best first.
+void PressStarts::run(std::vector<Runner*>& runners, double share) const {
+  parallel_for(context_, runners.size(), 1, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t k = begin; k < end; ++k) {
+      Runner& r = *runners[k];
+      note(r.search.run(share, context_), r);
+    }
+  });
+  std::stable_sort(runners.begin(), runners.end(), [&](const Runner* a, const Runner* b) {
+    return goodness(a->start.page, options_) > goodness(b->start.page, options_);
+  });
+}
+
 // Runs the searches of all starts. Whether a strip's width suits the charts shows early, so the
 // worse half is given up twice on the way. Twelve searches take three fifths of the time then.
-void PressStarts::race(std::vector<Runner>& runners, std::uint32_t round) const {
+bool PressStarts::race(std::vector<Runner>& runners, std::uint32_t round, double least) const {
   std::vector<Runner*> left;
   for (Runner& r : runners) left.push_back(&r);
+  if (least > 0) {
+    run(left, kLegs[0]);
+    if (scale_on_page(left.front()->start.page) * kMostBySearch < least) return false;
+  }
   for (const double share : legs(round)) {
-    parallel_for(context_, left.size(), 1, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t k = begin; k < end; ++k) {
-        Runner& r = *left[k];
-        note(r.search.run(share, context_), r);
-      }
-    });
-    std::stable_sort(left.begin(), left.end(), [&](const Runner* a, const Runner* b) {
-      return goodness(a->start.page, options_) > goodness(b->start.page, options_);
-    });
+    run(left, share);
     left.resize(std::clamp<std::size_t>((left.size() + 1) / 2, std::min(kLeastLeft, left.size()),
                                         left.size()));
   }
+  return true;
+}
+
+// Makes the layouts of the fullest starts lower than any order of placing charts does.
+void PressStarts::lower_fullest(std::vector<Runner>& runners, std::uint32_t round) const {
+  std::vector<Runner*> fullest;
+  for (Runner& r : runners)
+    if (!r.start.poses.empty()) fullest.push_back(&r);
+  std::stable_sort(fullest.begin(), fullest.end(), [&](const Runner* a, const Runner* b) {
+    return goodness(a->start.page, options_) > goodness(b->start.page, options_);
+  });
+  fullest.resize(std::min(fullest.size(), kLowered));
+  parallel_for(context_, fullest.size(), 1, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t k = begin; k < end; ++k) {
+      Runner& r = *fullest[k];
+      Nest nest = r.search.run(0, context_).nest;
+      OverlapSearchOptions overlap;
+      overlap.width = r.width;
+      // A square page whose width decides does not become smaller.
+      overlap.low_enough = options_.free_aspect ? 0 : r.width;
+      overlap.work = kOverlapWork << doublings_in(round);
+      overlap.seed = r.seed;
+      r.start.work += search_overlaps(pieces_, overlap, context_, nest);
+      take(nest, r);
+    }
+  });
 }
 
 // Rasterises the charts as rigid bodies. The search only needs outlines as fine as its cells,
@@ -206,16 +254,19 @@ PressStarts::Runner PressStarts::runner(std::size_t k, std::size_t count,
   search.layouts = kLayouts << doublings;
   // If there are only few charts, the search changes their order often enough.
   const LargestBy by = pieces_.size() < kManyCharts ? LargestBy::cells : LargestBy::boxes;
-  return {NestSearch(pieces_, plan_by_size(pieces_, by), search), search.width, {}};
+  return {NestSearch(pieces_, plan_by_size(pieces_, by), search), search.width, random.next(), {}};
 }
 
 void PressStarts::note(const NestSearchResult& found, Runner& runner) const {
   PressStart& start = runner.start;
   start.layouts = found.layouts;
   start.work = found.work;
-  if (!found.nest.left_over.empty()) return;
-  put_down(found.nest, start);
-  start.page = {runner.width * double(cell_), found.nest.used_height * double(cell_)};
+  if (found.nest.left_over.empty()) take(found.nest, runner);
+}
+
+void PressStarts::take(const Nest& nest, Runner& runner) const {
+  put_down(nest, runner.start);
+  runner.start.page = {runner.width * double(cell_), nest.used_height * double(cell_)};
 }
 
 // Places a single chart in the direction in which its page is smallest.

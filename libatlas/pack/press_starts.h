@@ -52,7 +52,11 @@ class PressStarts {
 
   // Makes layouts for several widths of the page, by a search on coarse cells. Each round gives
   // other layouts. From the second round on, cells are finer.
-  std::vector<PressStart> make(std::uint32_t round);
+  // Gives the searches up early if no start is likely to reach the scale `least`.
+  std::vector<PressStart> make(std::uint32_t round, double least = 0);
+
+  // Returns the scale that charts have if this page is enlarged to a square page of full size.
+  double scale_on_page(const SqueezePage& page) const;
 
  private:
   void draw();
@@ -63,13 +67,18 @@ class PressStarts {
   struct Runner {
     NestSearch search;
     std::int32_t width;
+    std::uint64_t seed;
     PressStart start;
   };
   Runner runner(std::size_t k, std::size_t count, std::uint32_t round) const;
   std::uint32_t doublings_in(std::uint32_t round) const;
   std::span<const double> legs(std::uint32_t round) const;
-  void race(std::vector<Runner>& runners, std::uint32_t round) const;
+  // Returns false if it has given up.
+  bool race(std::vector<Runner>& runners, std::uint32_t round, double least) const;
+  void run(std::vector<Runner*>& runners, double share) const;
+  void lower_fullest(std::vector<Runner>& runners, std::uint32_t round) const;
   void note(const NestSearchResult& found, Runner& runner) const;
+  void take(const Nest& nest, Runner& runner) const;
   PressStart alone() const;
   void put_down(const Nest& nest, PressStart& start) const;
 

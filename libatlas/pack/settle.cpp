@@ -6,6 +6,7 @@
 #include <numeric>
 
 #include "libatlas/core/parallel.h"
+#include "libatlas/pack/nudge.h"
 #include "libatlas/pack/slide.h"
 
 namespace atlas::pack {
@@ -41,27 +42,53 @@ class Settler {
   static constexpr double kCloser = 0.8;
   static constexpr std::int64_t kSmallShare = 60;
 
-  // Places the charts that have targets. The targets move together by less than charts shrink, so
-  // most of the free space that results is at the page's upper and right edges. There, charts can
-  // move out of the way of those placed before them.
+  // Places the charts that have targets.
   bool place_at(double share, PressedPage& result) {
-    const double scale = share * scale_;
-    draw(scale, std::pow(share, kCloser));
-    const std::int32_t side = options_.page_size / options_.alignment;
-    PlainPage page(side, side);
+    draw(share * scale_, std::pow(share, kCloser));
+    result.scale = share * scale_;
     result.places.assign(targets_.size(), {});
-    result.page = {};
     displaced_.clear();
     specks_.clear();
     sort_by_distance();
+    for (const std::uint32_t i : order_)
+      if (targets_[i].anywhere && masks_[i].cells > 0) specks_.push_back(i);
+    const std::int32_t side = options_.page_size / options_.alignment;
+    for (std::uint32_t i : order_)
+      if (!targets_[i].anywhere && (masks_[i].width > side || masks_[i].height > side))
+        return false;
+    if (!place_together(side, result) && !place_in_turn(side, result)) return false;
+    measure(result);
+    return true;
+  }
+
+  // Puts every chart at its target and moves those that overlap, which lose a cell or two to
+  // rounding, apart.
+  bool place_together(std::int32_t side, PressedPage& result) {
+    std::vector<PlacedMask> masks(masks_.size());
+    Extent page;
+    for (const std::uint32_t i : order_) {
+      const Mask& mask = masks_[i];
+      if (mask.cells == 0 || targets_[i].anywhere) continue;
+      const auto x = static_cast<std::int32_t>(std::lround(wanted_[i].x));
+      const auto y = static_cast<std::int32_t>(std::lround(wanted_[i].y));
+      masks[i] = {&mask, {x, y}};
+      page.width = std::min(side, std::max(page.width, std::max(0, x) + mask.width));
+      page.height = std::min(side, std::max(page.height, std::max(0, y) + mask.height));
+    }
+    if (!nudge_apart(page, masks)) return false;
+    for (std::uint32_t i = 0; i < masks.size(); ++i)
+      if (masks[i].mask) note(i, masks[i].at, result);
+    return true;
+  }
+
+  // Places one chart after another near its target. The targets move together by less than charts
+  // shrink, so most of the free space that results is at the page's upper and right edges. There,
+  // charts can move out of the way of those placed before them.
+  bool place_in_turn(std::int32_t side, PressedPage& result) {
+    PlainPage page(side, side);
     for (std::uint32_t i : order_) {
       const Mask& mask = masks_[i];
-      if (mask.cells == 0) continue;
-      if (targets_[i].anywhere) {
-        specks_.push_back(i);
-        continue;
-      }
-      if (mask.width > side || mask.height > side) return false;
+      if (mask.cells == 0 || targets_[i].anywhere) continue;
       BitPage::Place at;
       if (nearest_free(i, page, at) || (make_way(i, page, result) && nearest_free(i, page, at))) {
         page.put(mask, at);
@@ -72,10 +99,7 @@ class Settler {
         return false;
       }
     }
-    if (!displaced_.empty() && !place_in_gaps(displaced_, side, result)) return false;
-    measure(result);
-    result.scale = scale;
-    return true;
+    return displaced_.empty() || place_in_gaps(displaced_, side, result);
   }
 
   // Moves the charts of the last layout together, since targets leave slack between exact masks.

@@ -9,6 +9,7 @@
 #include "libatlas/core/parallel.h"
 #include "libatlas/core/random.h"
 #include "libatlas/pack/nest.h"
+#include "libatlas/pack/overlap_search.h"
 #include "libatlas/pack/slide.h"
 
 namespace atlas::pack {
@@ -26,7 +27,10 @@ constexpr std::size_t kFewCharts = 16, kLowStarts = 4;
 constexpr std::uint64_t kLayouts = 20;  // layouts of one start
 // Words that all starts of a round examine together, 2 ns each.
 constexpr std::uint64_t kSearchWork = 320'000'000;
-// Maximum number of doublings: `best` doubles both kLayouts and kSearchWork each round.
+// Words for each of the kSlidStarts fullest starts, which are made lower by letting charts overlap
+// for a while.
+constexpr std::uint64_t kOverlapWork = 10'000'000;
+// Maximum number of doublings: `best` doubles kLayouts, kSearchWork and kOverlapWork each round.
 constexpr std::uint32_t kMostDoublings = 4;
 constexpr int kSlides = 2;  // down and left; a third slide gains nothing
 constexpr std::uint32_t kDirections = 4;
@@ -34,10 +38,12 @@ constexpr std::uint32_t kDirections = 4;
 // A layout on cells. At the same scale, the masks on cells cover the exact masks.
 struct Start {
   double scale = 0, fill = 0;
+  std::int32_t height = 0;        // in cells
   std::vector<NestPlace> places;  // one per chart
   // Origins of the masks on cells, in the direction in which they are placed.
   std::vector<Vec2d> origins;
   std::uint64_t layouts = 0, work = 0;
+  std::uint64_t seed = 1;
 };
 
 // The charts at their exact places.
@@ -144,6 +150,7 @@ class StraightPage {
         best.layouts += s.layouts;
         best.work += s.work;
       }
+      lower_fullest(starts, round, best);
       slide_fullest(starts, best);
       const double done = spent_share(options_, wall_seconds() - begun, best);
       if (options_.preset != PackPreset::best) break;
@@ -209,17 +216,53 @@ class StraightPage {
     search.layouts = layouts;
     search.work = kSearchWork / kStarts << std::min(round, kMostDoublings);
     NestSearchResult found = search_nest(pieces, plan_by_size(pieces), search, context_);
-    Nest& nest = found.nest;
     start.layouts = found.layouts;
     start.work = found.work;
-    if (!nest.left_over.empty() || nest.used_height == 0) return start;
+    start.seed = random.next();
+    if (found.nest.left_over.empty() && found.nest.used_height > 0)
+      take(std::move(found.nest), pieces, start);
+    return start;
+  }
+
+  void take(Nest nest, std::span<const Piece> pieces, Start& start) const {
+    start.height = nest.used_height;
     start.fill =
         start.scale * start.scale * area_ / (double(options_.page_size) * nest.used_height * cell_);
     start.origins.resize(pieces.size());
     for (std::size_t i = 0; i < pieces.size(); ++i)
       if (nest.places[i].placed) start.origins[i] = pieces[i].origins[nest.places[i].direction];
     start.places = std::move(nest.places);
-    return start;
+  }
+
+  // Sorts the starts, fullest first, and makes the first of them lower than any order of placing
+  // charts does.
+  void lower_fullest(std::vector<Start>& starts, std::uint32_t round, PressedPage& best) const {
+    sort(starts);
+    parallel_for(context_, kSlidStarts, 1, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t k = begin; k < end; ++k) {
+        Start& s = starts[k];
+        s.work = 0;
+        if (s.fill == 0) continue;
+        const std::vector<Piece> pieces = pieces_at(s.scale, cell_);
+        if (context_.cancelled()) return;  // pieces may not have been rasterised
+        Nest nest;
+        nest.places = s.places;
+        nest.used_height = s.height;
+        OverlapSearchOptions overlap;
+        overlap.width = options_.page_size / cell_;
+        overlap.work = kOverlapWork << std::min(round, kMostDoublings);
+        overlap.seed = s.seed;
+        s.work = search_overlaps(pieces, overlap, context_, nest);
+        take(std::move(nest), pieces, s);
+      }
+    });
+    for (std::size_t k = 0; k < kSlidStarts; ++k) best.work += starts[k].work;
+    sort(starts);
+  }
+
+  static void sort(std::vector<Start>& starts) {
+    std::stable_sort(starts.begin(), starts.end(),
+                     [](const Start& a, const Start& b) { return a.fill > b.fill; });
   }
 
   std::vector<Piece> pieces_at(double scale, std::int32_t cell) const {
@@ -235,8 +278,6 @@ class StraightPage {
   }
 
   void slide_fullest(std::vector<Start>& starts, PressedPage& best) const {
-    std::stable_sort(starts.begin(), starts.end(),
-                     [](const Start& a, const Start& b) { return a.fill > b.fill; });
     for (std::size_t k = 0; k < kSlidStarts && !context_.cancelled(); ++k) {
       const Start& s = starts[k];
       if (s.fill == 0) return;

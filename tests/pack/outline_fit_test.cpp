@@ -94,7 +94,7 @@ TEST(OutlineFit, BoxesAreTakenWhereTheyFillMore) {
   const Result<FitResult> better = fit_boxes_or_outlines(charts.items, o, {});
   ASSERT_TRUE(outlines.ok() && better.ok());
   EXPECT_TRUE(better->boxes);
-  EXPECT_GT(better->scale, 1.05 * outlines->scale);
+  EXPECT_GT(better->scale, outlines->scale);
   EXPECT_GT(better->filled, 0.74);
   EXPECT_EQ(test::check_outlines(test::placed_shapes(charts, *better), better->pages, o.padding),
             "");

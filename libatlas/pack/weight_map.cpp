@@ -1,0 +1,113 @@
+#include "libatlas/pack/weight_map.h"
+
+#include <algorithm>
+#include <cstring>
+
+#include "libatlas/core/wide_vectors.h"
+
+// GCC warns that functions pass such vectors differently with and without AVX. Here only inlined
+// functions take or return them.
+#pragma GCC diagnostic ignored "-Wpsabi"
+
+namespace atlas::pack {
+namespace {
+
+using Column = std::int32_t __attribute__((vector_size(32)));
+static_assert(sizeof(Column) == WeightMap::kColumn * sizeof(std::int32_t));
+
+ATLAS_INLINE Column load(const std::int32_t* from) {
+  Column column;
+  std::memcpy(&column, from, sizeof column);
+  return column;
+}
+
+ATLAS_INLINE std::int32_t least(const Column& column) {
+  std::int32_t low = column[0];
+  for (int k = 1; k < WeightMap::kColumn; ++k) low = std::min(low, column[k]);
+  return low;
+}
+
+// Sums over the runs of the mask. `base` is the cell at which the mask's box begins.
+ATLAS_INLINE Column weights(const Mask& mask, const std::int32_t* base, std::int32_t stride,
+                            std::int32_t most) {
+  constexpr std::int32_t kRows = 16;  // rows between two looks at whether it is too heavy
+  Column sum{};
+  for (std::int32_t r = 0; r < mask.height;) {
+    const std::int32_t end = std::min(mask.height, r + kRows);
+    for (; r < end; ++r)
+      for (const Run& run : mask.row(r)) {
+        sum += load(base + std::ptrdiff_t(run.end) * stride + r);
+        sum -= load(base + std::ptrdiff_t(run.begin) * stride + r);
+      }
+    if (least(sum) > most) break;
+  }
+  return sum;
+}
+
+ATLAS_WIDE Column* weights_wide(const Mask& mask, const std::int32_t* base, std::int32_t stride,
+                                std::int32_t most, Column* to) {
+  *to = weights(mask, base, stride, most);
+  return to;
+}
+
+ATLAS_INLINE void sum_columns(const std::int32_t* steps, std::int32_t* sums, std::int32_t width,
+                              std::int32_t stride) {
+  for (std::int32_t y = 0; y < stride; y += WeightMap::kColumn) {
+    Column weight{}, sum{};
+    for (std::int32_t x = 0; x <= width; ++x) {
+      const std::size_t at = std::size_t(x) * std::size_t(stride) + std::size_t(y);
+      std::memcpy(sums + at, &sum, sizeof sum);
+      weight += load(steps + at);
+      sum += weight;
+    }
+  }
+}
+
+ATLAS_WIDE void sum_columns_wide(const std::int32_t* steps, std::int32_t* sums, std::int32_t width,
+                                 std::int32_t stride) {
+  sum_columns(steps, sums, width, stride);
+}
+
+}  // namespace
+
+// The stride leaves room for a column that begins with the highest row.
+WeightMap::WeightMap(std::int32_t width, std::int32_t height)
+    : width_(width), stride_((height + 2 * kColumn - 1) / kColumn * kColumn) {
+  steps_.resize(index(width + 1, 0));
+  sums_.resize(index(width + 1, 0));
+}
+
+void WeightMap::clear() {
+  std::fill(steps_.begin(), steps_.end(), 0);
+}
+
+void WeightMap::add(const Mask& mask, BitPage::Place at, std::int32_t weight) {
+  for (std::int32_t r = 0; r < mask.height; ++r)
+    for (const Run& run : mask.row(r)) {
+      steps_[index(at.x + run.begin, at.y + r)] += weight;
+      steps_[index(at.x + run.end, at.y + r)] -= weight;
+    }
+}
+
+void WeightMap::sum() {
+  if (has_wide_vectors)
+    sum_columns_wide(steps_.data(), sums_.data(), width_, stride_);
+  else
+    sum_columns(steps_.data(), sums_.data(), width_, stride_);
+}
+
+WeightMap::Lightest WeightMap::weigh(const Mask& mask, BitPage::Place lowest, std::int32_t count,
+                                     std::int32_t most) const {
+  Column column;
+  const std::int32_t* const base = sums_.data() + index(lowest.x, lowest.y);
+  if (has_wide_vectors)
+    weights_wide(mask, base, stride_, most, &column);
+  else
+    column = weights(mask, base, stride_, most);
+  Lightest best{column[0], lowest};
+  for (std::int32_t k = 1; k < count; ++k)
+    if (column[k] < best.weight) best = {column[k], {lowest.x, lowest.y + k}};
+  return best;
+}
+
+}  // namespace atlas::pack

@@ -1,0 +1,51 @@
+// Internal: weighs the places that a piece could take among pieces that it may overlap.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "libatlas/pack/bit_page.h"
+
+namespace atlas::pack {
+
+// A strip of cells, each of which carries the sum of the weights of the pieces on it. The weight of
+// a place is the sum over the cells that a mask would cover there, so it takes two table lookups
+// for each run of the mask.
+class WeightMap {
+ public:
+  // Places are weighed in columns of this many, one above the other, at once.
+  static constexpr std::int32_t kColumn = 8;
+
+  // Both sides are in cells.
+  WeightMap(std::int32_t width, std::int32_t height);
+
+  // The map is filled by clear(), any number of calls of add(), and sum(). The product of the
+  // weights and the cells of all masks must be below 2^31. Masks must lie within the strip.
+  void clear();
+  void add(const Mask& mask, BitPage::Place at, std::int32_t weight);
+  void sum();
+
+  // The lightest of a column of places, and the lowest of equally light ones.
+  struct Lightest {
+    std::int32_t weight = 0;
+    BitPage::Place at;
+  };
+
+  // Weighs the places from `lowest` to `count` - 1 rows above it (count: 1 .. kColumn). The mask
+  // must lie within the strip at all of them. If all places turn out to be heavier than `most`, the
+  // weight that is returned is above `most`, but otherwise of no meaning.
+  Lightest weigh(const Mask& mask, BitPage::Place lowest, std::int32_t count,
+                 std::int32_t most) const;
+
+ private:
+  // Columns of cells follow one another, and a column begins with row 0. In `sums_`, every cell
+  // holds the sum of the weights to its left.
+  std::size_t index(std::int32_t x, std::int32_t y) const {
+    return std::size_t(x) * std::size_t(stride_) + std::size_t(y);
+  }
+
+  std::int32_t width_, stride_;
+  std::vector<std::int32_t> steps_, sums_;
+};
+
+}  // namespace atlas::pack
