@@ -15,6 +15,7 @@
 #include "libatlas/scene/uv_page.h"
 #include "libatlas/sheets/one_sided.h"
 #include "libatlas/uvs/draw_once.h"
+#include "libatlas/uvs/written_stretch.h"
 
 namespace atlas {
 namespace {
@@ -26,6 +27,12 @@ World make_world(const ExportToWrite& made, const WorldMesh& mesh, ExportReport&
   AssembledWorld assembled = assemble_world(made.scene, placed, mesh, made.baked);
   World world = std::move(assembled.world);
   report.thin_triangles = assembled.thin_triangles;
+  MeshView shape;
+  shape.positions = made.scene.positions;
+  const WrittenStretch written =
+      measure_written(shape, placed, world.uvs, options.charts.max_stretch, context);
+  report.written_stretch_999 = written.stretch_999;
+  report.charts_beyond_bound = written.beyond;
   if (!made.baked) {
     // After a move, the texels that a chart owns for its mip levels would reach a texel further.
     const DrawnTwice drawn = options.plain_mip_levels == 0
