@@ -27,12 +27,6 @@ World make_world(const ExportToWrite& made, const WorldMesh& mesh, ExportReport&
   AssembledWorld assembled = assemble_world(made.scene, placed, mesh, made.baked);
   World world = std::move(assembled.world);
   report.thin_triangles = assembled.thin_triangles;
-  MeshView shape;
-  shape.positions = made.scene.positions;
-  const WrittenStretch written =
-      measure_written(shape, placed, world.uvs, options.charts.max_stretch, context);
-  report.written_stretch_999 = written.stretch_999;
-  report.charts_beyond_bound = written.beyond;
   if (!made.baked) {
     // After a move, the texels that a chart owns for its mip levels would reach a texel further.
     const DrawnTwice drawn = options.plain_mip_levels == 0
@@ -45,6 +39,12 @@ World make_world(const ExportToWrite& made, const WorldMesh& mesh, ExportReport&
       world.info.push_back(
           uv_page_text(p, made.layout.pages[p].width, made.layout.pages[p].height));
   }
+  MeshView shape;
+  shape.positions = made.scene.positions;
+  const WrittenStretch written =
+      measure_written(shape, placed, world.uvs, options.charts.max_stretch, context);
+  report.written_stretch_999 = written.stretch_999;
+  report.charts_beyond_bound = written.beyond;
   world.up = options.up;
   world.title = options.target.stem().string();
   world.metres_per_unit = made.scene.metres_per_unit;
