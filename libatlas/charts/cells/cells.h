@@ -36,7 +36,8 @@ struct CellInput {
 // grains, patches of some ten triangles, by farthest-point sampling (in large pieces after seeds
 // that are merely a few grains apart) and two recentring steps (the alternation of Cohen-Steiner et
 // al. 2004). One pass over the triangles then grows the cells, and pull_teeth() (rims.h) smooths
-// their borders. Cells are numbered by their seeds' place in the mesh. O(n log n) with a small heap.
+// their borders. Cells are numbered by their seeds' place in the mesh. O(n log n) with a small
+// heap.
 Cells grow_cells(const CellInput& input, const CellOptions& options, const Context& context);
 
 // Divides cells until the normals of each lie within half-angle `cone` (radians) of one direction.
