@@ -47,6 +47,11 @@ double luma_of(const float c[3]) {
   return luma<double>(c[0], c[1], c[2]);
 }
 
+// Pages cannot show negative light, and the statistics count it as 0 as well.
+float positive(float v) {
+  return v > 0 ? v : 0.0f;
+}
+
 double decibels(double mean_square) {
   return mean_square > 0 ? -10 * std::log10(mean_square) : kPerfectDecibels;
 }
@@ -64,10 +69,11 @@ struct Sums {
       ++out.unplaced;
       return;
     }
-    const Vec3f want = tone.display(s.luminance);
+    const Vec3f light{positive(s.luminance.x), positive(s.luminance.y), positive(s.luminance.z)};
+    const Vec3f want = tone.display(light);
     const float w[3] = {want.x, want.y, want.z}, g[3] = {s.shown.x, s.shown.y, s.shown.z};
-    const float c[3] = {s.luminance.x, s.luminance.y, s.luminance.z};
-    const bool lit = c[0] != 0 || c[1] != 0 || c[2] != 0;
+    const float c[3] = {light.x, light.y, light.z};
+    const bool lit = c[0] > 0 || c[1] > 0 || c[2] > 0;
     float largest = 0;
     ++all;
     for (int k = 0; k < 3; ++k) {

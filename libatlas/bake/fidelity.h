@@ -23,8 +23,9 @@ inline constexpr double kPerfectDecibels = 999;
 
 // The error of the lit samples, unless said otherwise.
 struct Fidelity {
-  std::uint64_t lit = 0, unlit = 0;  // samples whose luminance is not / is exactly zero
-  std::uint64_t clipped = 0;         // lit samples at or above display white in a channel
+  // Samples that have a channel above 0, and those that do not. Channels below 0 count as 0.
+  std::uint64_t lit = 0, unlit = 0;
+  std::uint64_t clipped = 0;   // lit samples at or above display white in a channel
   std::uint64_t unplaced = 0;  // samples on charts without a placement or page; they are left out
   // The root mean square error of luma after decoding, scene units. It is measured only where the
   // tone curve can be inverted, that is with `linear` tone mapping and for samples that are not

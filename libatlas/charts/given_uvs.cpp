@@ -48,7 +48,9 @@ class GivenChart {
     place(std::sqrt(surface / uv_area), flat);
     const InjectivityOptions safe{.clearance = kMinAltitude * std::sqrt(surface)};
     const Injectivity check = check_injectivity(mesh, uvs_, safe);
-    if (!check.injective || !check.thin.empty()) return Verdict::bad;
+    const auto has_area = [&](std::uint32_t i) { return !input_.topology.thin(triangles[i]); };
+    if (!check.injective || std::any_of(check.thin.begin(), check.thin.end(), has_area))
+      return Verdict::bad;
     flat.distortion = measure_distortion(mesh, uvs_);
     flat.triangles.assign(triangles.begin(), triangles.end());
     flat.corners = chart_.corners;

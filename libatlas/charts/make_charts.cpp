@@ -99,7 +99,9 @@ class Assembler {
     set_.charts.reserve(charts.size());
     set_.uvs.reserve(uvs);
     set_.uv_vertex.reserve(uvs);
-    for (FlatChart& chart : charts) append(chart);
+    for (FlatChart& chart : charts) {
+      if (has_area(chart)) append(chart);
+    }
     place_degenerate();
     number_triangles();
     for (std::uint32_t t = 0; t < n; ++t) {
@@ -111,6 +113,13 @@ class Assembler {
   std::uint32_t material(std::uint32_t t) const {
     return mesh_.materials.empty() ? 0 : mesh_.materials[t];
   }
+
+  bool has_area(const FlatChart& chart) const {
+    return std::any_of(chart.triangles.begin(), chart.triangles.end(),
+                       [&](std::uint32_t t) { return !topology_.thin(t); });
+  }
+
+  bool placed(std::uint32_t t) const { return set_.triangle_chart[t] != kNoIndex; }
 
   void append(FlatChart& flat) {
     const auto id = static_cast<std::uint32_t>(set_.charts.size());
@@ -142,26 +151,29 @@ class Assembler {
     flat = FlatChart{};  // its memory is needed no more
   }
 
-  // A triangle without area is drawn nowhere: it joins the chart of a neighbour, one that shares
-  // an edge if there is one, and lies on that edge or on a vertex; else any chart of its material.
+  // A triangle without area that no chart holds is drawn nowhere: it joins the chart of a
+  // neighbour, one that shares an edge if there is one, and lies on that edge or on a vertex; else
+  // any chart of its material.
   void place_degenerate() {
     if (topology_.defects.degenerate_triangles == 0) return;
     std::vector<std::uint8_t> wanted(topology_.points.size(), 0);
     for (std::uint32_t t = 0; t < topology_.triangle_count(); ++t) {
-      if (!topology_.degenerate(t)) continue;
+      if (placed(t)) continue;
       for (std::uint32_t h = 3 * t; h < 3 * t + 3; ++h) wanted[topology_.corner_vertex[h]] = 1;
     }
     std::unordered_map<std::uint64_t, std::uint32_t> around;  // vertex or edge -> a half-edge
     for (std::uint32_t h = 0; h < topology_.corner_vertex.size(); ++h) {
       const std::uint32_t a = topology_.corner_vertex[h];
       const std::uint32_t b = topology_.corner_vertex[next_half_edge(h)];
-      if (topology_.degenerate(h / 3) || !wanted[a]) continue;
+      if (!placed(h / 3) || !wanted[a]) continue;
       around.emplace(key(a, a), h);
       if (wanted[b]) around.emplace(key(std::min(a, b), std::max(a, b)), h);
     }
+    std::vector<std::uint32_t> left;
     for (std::uint32_t t = 0; t < topology_.triangle_count(); ++t) {
-      if (topology_.degenerate(t)) place_degenerate(t, around);
+      if (!placed(t)) left.push_back(t);
     }
+    for (const std::uint32_t t : left) place_degenerate(t, around);
   }
 
   static std::uint64_t key(std::uint64_t a, std::uint64_t b) { return a << 32 | b; }
@@ -182,7 +194,7 @@ class Assembler {
         set_.triangle_chart[t] = set_.triangle_chart[h / 3];
         for (std::uint32_t i = 0; i < 3; ++i) {
           const bool other = edge && v[i] == topology_.corner_vertex[next_half_edge(h)];
-          set_.triangle_uv[3 * t + i] = other ? at_next : at_h;
+          set_.triangle_uv[topology_.input_corner(3 * t + i)] = other ? at_next : at_h;
         }
         return;
       }

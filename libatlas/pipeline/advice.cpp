@@ -53,6 +53,15 @@ bool shattered_by_noise(const ExportReport& report, const ExportOptions& options
          kChartsAPeak * peaks >= report.charts.size();
 }
 
+std::string on_rounding(const ExportReport& report) {
+  return fmt::format(
+      "{} of {} charts are stretched more than the bound allows once their uvs are floats, up to "
+      "{:.4g} (charts or triangles narrower than about a tenth of a texel, and bounds below about "
+      "1.001, need more digits than floats have: a larger ExportOptions::atlas_size or "
+      "ChartOptions::max_stretch)",
+      report.charts_beyond_bound, report.charts.size(), report.written_stretch_999);
+}
+
 std::string on_noise(const ExportReport& report) {
   return fmt::format(
       "{} charts, more the finer the mesh is: its surface is rough as by scan noise, and {} of {} "
@@ -182,6 +191,7 @@ std::vector<std::string> advice_on(const ExportReport& report, const ExportOptio
         "no triangle has an area, so uvs say nothing (check how the scene was exported, and the "
         "digits of its coordinates)");
   if (shattered_by_noise(report, options)) lines.push_back(on_noise(report));
+  if (report.charts_beyond_bound > 0) lines.push_back(on_rounding(report));
   if (report.pages.empty() || report.gpu_bytes == 0) return lines;  // no light was baked
   if (report.luminance.lit_area == 0 && report.luminance.unlit_area > 0)
     lines.push_back(

@@ -15,6 +15,7 @@
 #include "libatlas/scene/uv_page.h"
 #include "libatlas/sheets/one_sided.h"
 #include "libatlas/uvs/draw_once.h"
+#include "libatlas/uvs/written_stretch.h"
 
 namespace atlas {
 namespace {
@@ -38,6 +39,12 @@ World make_world(const ExportToWrite& made, const WorldMesh& mesh, ExportReport&
       world.info.push_back(
           uv_page_text(p, made.layout.pages[p].width, made.layout.pages[p].height));
   }
+  MeshView shape;
+  shape.positions = made.scene.positions;
+  const WrittenStretch written =
+      measure_written(shape, placed, world.uvs, options.charts.max_stretch, context);
+  report.written_stretch_999 = written.stretch_999;
+  report.charts_beyond_bound = written.beyond;
   world.up = options.up;
   world.title = options.target.stem().string();
   world.metres_per_unit = made.scene.metres_per_unit;

@@ -54,6 +54,10 @@ struct ExportReport {
   // Charts
   std::vector<Chart> charts = {};
   Distortion distortion = {};
+  // The largest Distortion::stretch_999 of a chart with its uvs as floats, and the charts that
+  // exceed ChartOptions::max_stretch only through that.
+  double written_stretch_999 = 1;
+  std::uint64_t charts_beyond_bound = 0;
   double seam_length = 0, surface_area = 0;  // scene units, scene units squared
   ChartSet::Repairs repairs = {};
   ChartSet::Noise noise = {};

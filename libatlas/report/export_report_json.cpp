@@ -114,6 +114,8 @@ Json charts_json(const ExportReport& r) {
       {"planar", planar},
       {"widest_cone_degrees", widest_cone},
       {"distortion", json_of(r.distortion)},
+      {"written_stretch_999", r.written_stretch_999},
+      {"beyond_bound", r.charts_beyond_bound},
       {"seam_length", r.seam_length},
       {"seam_per_root_area", r.surface_area > 0 ? r.seam_length / std::sqrt(r.surface_area) : 0},
       {"surface_area", r.surface_area},

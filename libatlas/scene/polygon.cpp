@@ -39,13 +39,30 @@ std::vector<Vec2d> project(std::span<const Vec3d> corners) {
   return flat;
 }
 
-// Returns whether the polygon never turns right and winds once.
-bool convex(const std::vector<Vec2d>& p) {
+// How far a corner may lie from a straight side and still be a hanging one, relative to the largest
+// coordinate. Rounding to floats moves each of three corners by up to a sixteen-millionth of it.
+constexpr double kStraightness = 1.0 / (1 << 22);
+
+// Returns twice the area that a triangle needs to be higher than `height` over its longest edge.
+double least_area(const Vec2d& a, const Vec2d& b, const Vec2d& c, double height) {
+  const auto length = [](const Vec2d& p, const Vec2d& q) {
+    return std::hypot(q.x - p.x, q.y - p.y);
+  };
+  return height * std::max({length(a, b), length(b, c), length(c, a)});
+}
+
+double twice_area(const Vec2d& a, const Vec2d& b, const Vec2d& c) {
+  return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
+}
+
+// Returns whether the polygon turns right nowhere, but for hanging corners, and winds once.
+bool convex(const std::vector<Vec2d>& p, double height) {
   int sign_changes = 0;
   double last = 0;
   for (std::size_t i = 0; i < p.size(); ++i) {
     const Vec2d &a = p[i], &b = p[(i + 1) % p.size()], &c = p[(i + 2) % p.size()];
-    if (orientation(a, b, c) < 0) return false;
+    if (orientation(a, b, c) < 0 && -twice_area(a, b, c) > least_area(a, b, c, height))
+      return false;
     const double step = b.x - a.x;
     if (step == 0) continue;
     if (last != 0 && (step > 0) != (last > 0)) ++sign_changes;
@@ -53,6 +70,109 @@ bool convex(const std::vector<Vec2d>& p) {
   }
   return sign_changes <= 2;  // a polygon that winds twice changes direction more often
 }
+
+// Whether every triangle of the fan from corner 0 is counter-clockwise and not mere rounding.
+bool fans_out(const std::vector<Vec2d>& p, double height) {
+  for (std::size_t i = 1; i + 1 < p.size(); ++i) {
+    if (orientation(p[0], p[i], p[i + 1]) <= 0) return false;
+    if (twice_area(p[0], p[i], p[i + 1]) <= least_area(p[0], p[i], p[i + 1], height)) return false;
+  }
+  return true;
+}
+
+// Sweeps a convex polygon from left to right, as monotone polygons are triangulated (Garey et al.
+// 1978). Corners of a straight side wait until a corner of another side comes, so hanging corners
+// get triangles with area whichever corner is the first. Takes linear time.
+class Sweep {
+ public:
+  Sweep(const std::vector<Vec2d>& points, double height,
+        std::vector<std::array<std::uint32_t, 3>>& triangles)
+      : points_(points), height_(height), triangles_(triangles) {}
+
+  // Returns false, with unusable triangles, if the polygon is not monotone or a triangle would be
+  // turned over.
+  bool run() {
+    if (!sort()) return false;
+    waiting_ = {order_[0].corner, order_[1].corner};
+    forward_ = order_[1].forward;
+    for (std::size_t i = 2; i < order_.size(); ++i) {
+      const bool last = i + 1 == order_.size();
+      if (!last && order_[i].forward == forward_) {
+        add_to_chain(order_[i].corner);
+      } else {
+        add_across(order_[i]);
+      }
+    }
+    return std::all_of(triangles_.begin(), triangles_.end(), [&](const auto& t) {
+      return orientation(points_[t[0]], points_[t[1]], points_[t[2]]) >= 0;
+    });
+  }
+
+ private:
+  struct Place {
+    std::uint32_t corner;
+    bool forward;  // whether it lies on the chain that runs from left to right
+  };
+
+  bool before(std::uint32_t a, std::uint32_t b) const {
+    const Vec2d &p = points_[a], &q = points_[b];
+    return p.x != q.x ? p.x < q.x : p.y < q.y;
+  }
+
+  // Fills order_ by merging the two chains. Returns false if one of them goes back.
+  bool sort() {
+    const auto n = std::uint32_t(points_.size());
+    std::uint32_t left = 0, right = 0;
+    for (std::uint32_t i = 1; i < n; ++i) {
+      if (before(i, left)) left = i;
+      if (before(right, i)) right = i;
+    }
+    order_.push_back({left, true});
+    std::uint32_t f = (left + 1) % n, b = (left + n - 1) % n;
+    while (f != right || b != right) {
+      const bool forward = f != right && (b == right || before(f, b));
+      const std::uint32_t next = forward ? (f + 1) % n : (b + n - 1) % n;
+      if (before(next, forward ? f : b)) return false;
+      order_.push_back({forward ? f : b, forward});
+      (forward ? f : b) = next;
+    }
+    order_.push_back({right, true});
+    return order_.size() == n;
+  }
+
+  void add(std::uint32_t a, std::uint32_t b, std::uint32_t c) {
+    triangles_.push_back(forward_ ? std::array{a, b, c} : std::array{b, a, c});
+  }
+
+  // Cuts off the corners of the chain that the new one sees.
+  void add_to_chain(std::uint32_t corner) {
+    while (waiting_.size() > 1) {
+      const std::uint32_t a = waiting_[waiting_.size() - 2], b = waiting_.back();
+      const Vec2d &p = points_[a], &q = points_[b], &r = points_[corner];
+      const int turn = orientation(p, q, r);
+      if ((forward_ ? turn : -turn) <= 0) break;
+      if (std::abs(twice_area(p, q, r)) <= least_area(p, q, r, height_)) break;
+      add(a, b, corner);
+      waiting_.pop_back();
+    }
+    waiting_.push_back(corner);
+  }
+
+  // Joins all that wait with a corner of the other chain.
+  void add_across(const Place& place) {
+    for (std::size_t k = 1; k < waiting_.size(); ++k)
+      add(waiting_[k - 1], waiting_[k], place.corner);
+    waiting_ = {waiting_.back(), place.corner};
+    forward_ = place.forward;
+  }
+
+  const std::vector<Vec2d>& points_;
+  double height_;
+  std::vector<std::array<std::uint32_t, 3>>& triangles_;
+  std::vector<Place> order_;
+  std::vector<std::uint32_t> waiting_;  // corners of one chain, whose triangles are not known yet
+  bool forward_ = true;                 // the chain of waiting_
+};
 
 bool inside(Vec2d a, Vec2d b, Vec2d c, Vec2d p) {
   return orientation(a, b, p) >= 0 && orientation(b, c, p) >= 0 && orientation(c, a, p) >= 0;
@@ -245,14 +365,26 @@ bool triangulate(std::span<const Vec3d> corners,
                  std::vector<std::array<std::uint32_t, 3>>& triangles) {
   triangles.clear();
   const auto n = static_cast<std::uint32_t>(corners.size());
-  const std::vector<Vec2d> flat = n > 3 ? project(corners) : std::vector<Vec2d>{};
-  const bool fan = n == 3 || convex(flat);
-  if (!fan && n <= kMaxConcave) {
-    EarClipper(flat, triangles).run();
+  if (n == 3) {
+    triangles.push_back({0, 1, 2});
     return true;
   }
+  const std::vector<Vec2d> flat = project(corners);
+  double largest = 0;
+  for (const Vec3d& p : corners)
+    largest = std::max({largest, std::abs(p.x), std::abs(p.y), std::abs(p.z)});
+  const double height = kStraightness * largest;
+  const bool round = convex(flat, height);
+  if (!round || !fans_out(flat, height)) {
+    if (round && Sweep(flat, height, triangles).run()) return true;
+    triangles.clear();
+    if (n <= kMaxConcave) {
+      EarClipper(flat, triangles).run();
+      return true;
+    }
+  }
   for (std::uint32_t i = 1; i + 1 < n; ++i) triangles.push_back({0, i, i + 1});
-  return fan;
+  return round;
 }
 
 }  // namespace atlas

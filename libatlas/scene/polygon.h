@@ -11,7 +11,9 @@
 namespace atlas {
 
 // Cuts a polygon of n >= 3 corners into n - 2 triangles of corner numbers, which keep its
-// orientation. Convex polygons become a fan from corner 0. Concave ones are cut by ear clipping in
+// orientation. Convex polygons become a fan from corner 0, or are swept in linear time if corners
+// that hang on straight sides (to within the rounding of floats) would give triangles of the fan no
+// area. Concave ones are cut by ear clipping. Both are done in
 // the projection along the largest component of the polygon's normal (Newell's normal). Degenerate
 // or self-intersecting outlines also give n - 2 triangles. Ears are found with exact predicates in
 // the projection, so a simple outline gives triangles of its own orientation there, however thin

@@ -10,6 +10,7 @@
 #include "libatlas/core/degrees.h"
 #include "libatlas/core/disjoint_sets.h"
 #include "libatlas/core/glm_bridge.h"
+#include "libatlas/core/half_edge.h"
 #include "libatlas/scene/triangle_area.h"
 
 namespace atlas {
@@ -225,11 +226,77 @@ class LightSeamFinder {
   std::vector<Crease> creases_;
 };
 
+// Triangles without area close T-junctions: a vertex hangs on the edge of a neighbour, whose light
+// runs straight from end to end.
+class HangingVertices {
+ public:
+  HangingVertices(const LuminanceSampler& sampler, const ToneMapping& tone, double visible_jump)
+      : scene_(sampler.scene()), sampler_(sampler), tone_(tone), visible_jump_(visible_jump) {
+    for (std::uint32_t t = 0; t < scene_.triangle_count(); ++t) measure(t);
+  }
+
+  // Makes seams of all such edges if the light jumps along enough of them.
+  void add_to(LightSeams& seams) const {
+    if (edges_.empty() || jumping_ < kSomeOfACrease * all_) return;
+    seams.edges.resize(scene_.indices.size(), 0);
+    seams.length += all_;
+    for (const std::uint32_t h : edges_) seams.edges[h] = 1;
+  }
+
+ private:
+  // A vertex this near to an edge, relative to its length, hangs on it.
+  static constexpr double kNear = 1e-6;
+
+  glm::dvec3 position(std::uint32_t corner) const {
+    return to_dvec(scene_.positions[scene_.indices[corner]]);
+  }
+
+  void measure(std::uint32_t t) {
+    const glm::dvec3 p = position(3 * t), q = position(3 * t + 1), r = position(3 * t + 2);
+    const double squared[3] = {glm::dot(q - p, q - p), glm::dot(r - q, r - q),
+                               glm::dot(p - r, p - r)};
+    const auto k = std::uint32_t(std::max_element(squared, squared + 3) - squared);
+    const glm::dvec3 cross = glm::cross(q - p, r - p);
+    if (!(glm::dot(cross, cross) <= kNear * kNear * squared[k] * squared[k])) return;
+    if (!(squared[0] > 0 && squared[1] > 0 && squared[2] > 0)) return;
+    const std::uint32_t h = 3 * t + k;
+    const double length = std::sqrt(squared[k]);
+    edges_.push_back(h);
+    all_ += length;
+    const double at = glm::dot(position(previous_half_edge(h)) - position(h),
+                               position(next_half_edge(h)) - position(h)) /
+                      squared[k];
+    if (jump(h, std::clamp(float(at), 0.0f, 1.0f)) > visible_jump_) jumping_ += length;
+  }
+
+  // Returns the difference between the light of the third vertex and that at its place on the edge.
+  double jump(std::uint32_t h, float at) const {
+    const LuminanceSampler::Triangle triangle = sampler_.prepare(h / 3, 0);
+    float on_edge[3] = {0, 0, 0}, hanging[3] = {0, 0, 0};
+    on_edge[h % 3] = 1 - at;
+    on_edge[next_half_edge(h) % 3] = at;
+    hanging[previous_half_edge(h) % 3] = 1;
+    const auto shown = [&](const float w[3]) {
+      return tone_.display(LuminanceSampler::sample(triangle, w[0], w[1], w[2]));
+    };
+    return difference(shown(on_edge), shown(hanging));
+  }
+
+  const Scene& scene_;
+  const LuminanceSampler& sampler_;
+  const ToneMapping& tone_;
+  double visible_jump_;
+  std::vector<std::uint32_t> edges_;  // half-edges that a vertex hangs on
+  double all_ = 0, jumping_ = 0;      // length of them
+};
+
 }  // namespace
 
 LightSeams find_light_seams(const LuminanceSampler& sampler, const ToneMapping& tone,
                             const LightSeamOptions& options, const Context& context) {
-  return LightSeamFinder(sampler, tone, options).run(context);
+  LightSeams seams = LightSeamFinder(sampler, tone, options).run(context);
+  HangingVertices(sampler, tone, options.visible_jump).add_to(seams);
+  return seams;
 }
 
 }  // namespace atlas

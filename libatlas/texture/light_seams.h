@@ -29,9 +29,11 @@ struct LightSeams {
   double length = 0;                // scene units
 };
 
-// Finds the creases of the sampler's scene at which the light jumps visibly. Takes linear time,
-// except for a sort of the edges where vertices at one place have different light. Returns nothing
-// useful once cancelled.
+// Finds the creases of the sampler's scene at which the light jumps visibly. The edges that
+// vertices hang on, closed by triangles without area, become seams together, if on a quarter of
+// their length the light of the vertex differs visibly from that of the edge at its place. Takes
+// linear time, except for a sort of the edges where vertices at one place have different light.
+// Returns nothing useful once cancelled.
 LightSeams find_light_seams(const LuminanceSampler& sampler, const ToneMapping& tone,
                             const LightSeamOptions& options, const Context& context);
 

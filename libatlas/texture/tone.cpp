@@ -181,6 +181,12 @@ Result<ToneMapping> make_tone_mapping(const ToneOptions& options,
       set_reinhard_devlin(tone, options, s, white);
       break;
   }
+  if (!std::isfinite(tone.scale) || !std::isfinite(tone.white))
+    return Status{
+        ErrorCode::bad_input,
+        fmt::format("light of {:.3g} is to be white: floats do not hold the inverse (give "
+                    "the light in another unit)",
+                    white)};
   tone.scale *= static_cast<float>(std::exp2(options.exposure_stops));
   return tone;
 }

@@ -93,7 +93,8 @@ struct ToneMapping {
   Vec3f map_curve(Vec3f luminance) const;  // the operators other than linear
 };
 
-// Errors: bad_option, naming the option.
+// Errors: bad_option, naming the option; bad_input where the light is so weak (white below 3e-39)
+// that a float does not hold the scale.
 Result<ToneMapping> make_tone_mapping(const ToneOptions& options,
                                       const LuminanceStatistics& statistics);
 

@@ -92,6 +92,32 @@ TEST(Fidelity, MeasuresAKnownErrorExactly) {
   EXPECT_NEAR(f.rmse_display, 20 / 255.0 / std::sqrt(3.0), 0.001);
 }
 
+// Pages show negative light black, so it has the error of light that is 0.
+TEST(Fidelity, CountsNegativeLightAsNone) {
+  const auto measured = [](double below) {
+    LitShape shape = make_sheet({1, 1, 40, 40}, [&](double u, double) {
+      const Vec3f light = shown(0.8 * u);
+      return u < 0.5 ? Vec3f{float(below), float(below), float(below)} : light;
+    });
+    const LuminanceSampler sampler(shape.scene, Quantity::illuminance);
+    const ChartLight light{sampler, shape.charts, kPlain};
+    const std::vector<ChartPlacement> placements{place(shape.charts, 0, {96, 96}, {4, 4})};
+    FidelityMeter meter = meter_of(light, placements, {});
+    Image8 page = bake_page(light, placements, small_page(128), Context{})->display;
+    meter.add_page(0, page);
+    return meter.result();
+  };
+  // Negative by so little that the step to the lit half lies where it does without.
+  const Fidelity none = measured(0), negative = measured(-1e-6), far_below = measured(-1e3);
+  EXPECT_NEAR(double(none.unlit), 100000 * 19.0 / 40, 20);
+  EXPECT_NEAR(double(negative.unlit), double(none.unlit), 20);
+  EXPECT_NEAR(negative.psnr, none.psnr, 0.3);
+  EXPECT_NEAR(negative.rmse, none.rmse, 0.1 * none.rmse);
+  // The column that rises from the negative half is lit at its very end only.
+  EXPECT_NEAR(double(far_below.unlit), 50000, 100);
+  EXPECT_LT(far_below.rmse, 1);
+}
+
 // An error in the corner of two large triangles counts in proportion to its area, because samples
 // are even within a triangle and not only over the mesh.
 TEST(Fidelity, WeighsAPartOfATriangleByItsArea) {

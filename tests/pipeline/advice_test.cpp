@@ -36,6 +36,16 @@ TEST(Advice, KeptChartsOfSingleTrianglesAreNamed) {
   EXPECT_TRUE(advice_on(report, options).empty());
 }
 
+TEST(Advice, ChartsThatRoundingStretchesAreNamed) {
+  ExportReport report;
+  report.charts.resize(45);
+  report.written_stretch_999 = 7.6;
+  EXPECT_TRUE(advice_on(report, {}).empty());
+  report.charts_beyond_bound = 42;
+  EXPECT_TRUE(holds(advice_on(report, {}), "42 of 45 charts are stretched more"));
+  EXPECT_TRUE(holds(advice_on(report, {}), "up to 7.6 "));
+}
+
 TEST(Advice, ManyPagesNameLargerOnesThatHoldAsMuch) {
   ExportOptions options;
   EXPECT_TRUE(holds(advice_on(report_of(16000, 200, 2048), options),

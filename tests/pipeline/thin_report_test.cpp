@@ -63,6 +63,43 @@ TEST(ThinReport, AnExportTellsOfThinTriangles) {
   EXPECT_EQ(std::count(report->advice.begin(), report->advice.end(), text), 1);
 }
 
+// A strip so narrow that floats do not hold its width: the uvs written are wider. Its stretch is
+// measured in the file.
+TEST(ThinReport, AnExportTellsOfChartsThatRoundingStretches) {
+  const TempFolder folder;
+  LoadedScene loaded;
+  constexpr std::uint32_t kSteps = 40;
+  for (std::uint32_t i = 0; i <= kSteps; ++i) {
+    for (const float y : {0.0f, 2e-10f}) loaded.scene.positions.push_back({float(i), y, 0});
+    const std::uint32_t a = 2 * i;
+    if (i < kSteps)
+      loaded.scene.indices.insert(loaded.scene.indices.end(),
+                                  {a, a + 2, a + 1, a + 1, a + 2, a + 3});
+  }
+  ASSERT_TRUE(complete_scene(loaded.scene).ok());
+  const ExportOptions options = square_page(folder);
+  const auto report = export_world(loaded, options, {}, {});
+  ASSERT_TRUE(report.ok()) << report.status().message();
+  ASSERT_EQ(report->charts.size(), 1u);
+  EXPECT_LT(report->distortion.stretch_999, 1.25);
+  const auto written = read_uv_obj(options.target);
+  ASSERT_TRUE(written.ok()) << written.status().message();
+  // A strip that is w times as wide as its surface, at its own scale, is stretched by the root of
+  // w.
+  double area = 0, length = 0;
+  for (const auto& face : written->faces) {
+    const Vec2d a = written->uvs[face.uv[0]], b = written->uvs[face.uv[1]],
+                c = written->uvs[face.uv[2]];
+    area += 0.5 * std::abs((b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x));
+    for (const Vec2d& p : {b, c}) length = std::max(length, std::hypot(p.x - a.x, p.y - a.y));
+  }
+  const double wider = area / (length * length * kSteps * 2e-10);
+  EXPECT_GT(wider, 1.5) << "the test is too easy";
+  EXPECT_EQ(report->charts_beyond_bound, 1u);
+  EXPECT_GT(report->written_stretch_999, std::sqrt(wider) / 2);
+  EXPECT_NE(report->advice.front().find("1 of 1 charts are stretched more"), std::string::npos);
+}
+
 // A sheet of rows with a sliver on each, which rounding to 1/256 of a texel turns over here and
 // there. Wherever the sheet is moved to, some of them cover the centre of a texel.
 TEST(ThinReport, AnExportTellsOfTexelsDrawnTwice) {

@@ -103,6 +103,7 @@ TEST(ReportJson, FiguresOfChartsAreInTheirPlaces) {
   Chart& chart = r.charts[0];
   r.surface_area = 4;
   expect_in_place(r, {{"/charts/seam_length", &r.seam_length},
+                      {"/charts/written_stretch_999", &r.written_stretch_999},
                       {"/charts/segmentation_cpu_s", &t.segmentation_cpu},
                       {"/charts/parameterization_cpu_s", &t.parameterization_cpu},
                       {"/charts/cpu_parts_s/topology", &t.topology_cpu},

@@ -196,6 +196,84 @@ TEST(Polygon, CornersNextToALineAreCutExactly) {
   EXPECT_GT(checked, 5000);
 }
 
+// A convex polygon with corners that hang on its sides, turned by `turn` and rounded to floats.
+std::vector<Vec3d> hung(int sides, const std::vector<int>& hanging, double turn) {
+  std::vector<Vec3d> corners;
+  const auto at = [&](int side) {
+    const double a = 2 * M_PI * side / sides + turn;
+    return Vec2d{3 + std::cos(a), std::sin(a) - 2};
+  };
+  for (int side = 0; side < sides; ++side) {
+    const Vec2d from = at(side), to = at(side + 1);
+    const int parts = hanging[std::size_t(side) % hanging.size()] + 1;
+    for (int k = 0; k < parts; ++k) {
+      const double t = double(k) / parts;
+      corners.push_back({double(float(from.x + t * (to.x - from.x))),
+                         double(float(from.y + t * (to.y - from.y))), 0});
+    }
+  }
+  return corners;
+}
+
+// Triangles of hanging corners have the area that the corner leaves them, whichever corner is the
+// first and however rounding moves them off the side. A triangle of three corners of one side would
+// be a millionth as high as long.
+void check_hanging(std::vector<Vec3d> corners, double least) {
+  const auto area = [&](std::uint32_t a, std::uint32_t b, std::uint32_t c) {
+    return area2({corners[a].x, corners[a].y}, {corners[b].x, corners[b].y},
+                 {corners[c].x, corners[c].y});
+  };
+  for (std::size_t start = 0; start < corners.size(); ++start) {
+    std::rotate(corners.begin(), corners.begin() + 1, corners.end());
+    double whole = 0, sum = 0;
+    for (std::uint32_t k = 2; k < corners.size(); ++k) whole += area(0, k - 1, k);
+    std::vector<std::array<std::uint32_t, 3>> triangles;
+    ASSERT_TRUE(triangulate(corners, triangles));
+    ASSERT_EQ(triangles.size(), corners.size() - 2);
+    for (const auto& t : triangles) {
+      ASSERT_GT(area(t[0], t[1], t[2]), least) << corners.size() << " from " << start;
+      sum += area(t[0], t[1], t[2]);
+    }
+    ASSERT_NEAR(sum, whole, 1e-9);
+  }
+}
+
+TEST(Polygon, HangingCornersGetTrianglesWithArea) {
+  for (int sides = 3; sides <= 7; ++sides) {
+    for (const std::vector<int>& hanging :
+         {std::vector<int>{1}, {0, 1}, {2, 0, 0}, {1, 0, 3, 0, 2}, {5}, {0, 0, 4}}) {
+      for (const double turn : {0.0, M_PI / 4, M_PI / 2, 0.3, 1.1, 2.2, 4.7})
+        check_hanging(hung(sides, hanging, turn), 1e-4);
+    }
+  }
+}
+
+TEST(Polygon, RoundOutlinesWithHangingCornersTakeLinearTime) {
+  std::vector<Vec2d> round;
+  constexpr int n = 100'000;
+  for (int i = 0; i < n; ++i) {
+    const double a = 2 * M_PI * (i / 2) / (n / 2), b = 2 * M_PI * (i / 2 + 1) / (n / 2);
+    const double t = 0.5 * (i % 2);
+    round.push_back(
+        {(1 - t) * std::cos(a) + t * std::cos(b), (1 - t) * std::sin(a) + t * std::sin(b)});
+  }
+  std::mt19937 random(5);
+  const auto start = std::chrono::steady_clock::now();
+  check(round, random);
+  const std::chrono::duration<double> spent = std::chrono::steady_clock::now() - start;
+  EXPECT_LT(spent.count(), 5);  // takes a twentieth of a second
+}
+
+// Polygons without hanging corners are fans from their first corner.
+TEST(Polygon, StrictlyConvexOnesAreFans) {
+  for (const int sides : {4, 5, 40, 1000}) {
+    std::vector<std::array<std::uint32_t, 3>> triangles;
+    ASSERT_TRUE(triangulate(hung(sides, {0}, 0.1), triangles));
+    for (std::uint32_t i = 0; i < triangles.size(); ++i)
+      EXPECT_EQ(triangles[i], (std::array<std::uint32_t, 3>{0, i + 1, i + 2}));
+  }
+}
+
 TEST(Polygon, DegenerateOnesStillGiveTriangles) {
   std::vector<std::array<std::uint32_t, 3>> triangles;
   EXPECT_TRUE(triangulate(std::vector<Vec3d>(7, Vec3d{1, 2, 3}), triangles));

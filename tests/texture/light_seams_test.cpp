@@ -86,5 +86,35 @@ TEST(LightSeams, DoNotDependOnThePlaceOfTheScene) {
   EXPECT_EQ(moved.seams().edges, corner(3, constant(0.8), constant(0.3)).seams().edges);
 }
 
+// A triangle below an edge from (0, 0) to (1, 0) and two above it, whose common vertex hangs on the
+// edge. A fourth triangle closes it.
+Sheets hanging(double light_there, int closing_first) {
+  Sheets sheets;
+  LoadedScene loaded = sheets.loaded();
+  Scene& scene = loaded.scene;
+  scene.positions = {{0, 0, 0}, {1, 0, 0}, {0.5f, -1, 0}, {0.5f, 1, 0}, {0.25f, 0, 0}};
+  // 0.4 at the place where the vertex hangs.
+  for (const double e : {0.3, 0.7, 0.5, 0.5, light_there})
+    scene.illumination.push_back(
+        {srgb_decode(float(e)), srgb_decode(float(e)), srgb_decode(float(e))});
+  scene.indices = {0, 2, 1, 0, 4, 3, 4, 1, 3};
+  const std::uint32_t closing[3] = {0, 1, 4};
+  for (int k = 0; k < 3; ++k) scene.indices.push_back(closing[(closing_first + k) % 3]);
+  scene.triangle_material.assign(4, 0);
+  return Sheets(std::move(loaded));
+}
+
+TEST(LightSeams, AreEdgesThatAVertexOfOtherLightHangsOn) {
+  const float on_edge = srgb_encode(0.75f * srgb_decode(0.3f) + 0.25f * srgb_decode(0.7f));
+  for (int first = 0; first < 3; ++first) {
+    EXPECT_TRUE(hanging(on_edge + 0.04, first).seams().edges.empty());
+    const LightSeams seams = hanging(on_edge + 0.06, first).seams();
+    ASSERT_EQ(seams.edges.size(), 12u);
+    EXPECT_NEAR(seams.length, 1, 1e-6);
+    for (int h = 0; h < 12; ++h)
+      EXPECT_EQ(seams.edges[std::size_t(h)] != 0, h == 9 + (3 - first) % 3) << h;
+  }
+}
+
 }  // namespace
 }  // namespace atlas::test

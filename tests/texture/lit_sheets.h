@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <utility>
 
 #include "libatlas/scene/reader.h"
 #include "libatlas/texture/light_seams.h"
@@ -15,6 +16,8 @@ using LightAt = std::function<double(Vec3f position)>;
 class Sheets {
  public:
   Sheets() { loaded_.scene.materials.push_back({"white", {1, 1, 1}, -1}); }
+
+  explicit Sheets(LoadedScene loaded) : loaded_(std::move(loaded)) {}
 
   // Adds n x n quads over the parallelogram at `from` along u and v, facing u x v.
   Sheets& add(Vec3f from, Vec3f u, Vec3f v, int n, const LightAt& light) {

@@ -235,6 +235,19 @@ TEST(ToneMapping, ShowsAnUnlitSceneBlack) {
   }
 }
 
+// The scale of such light is infinite as a float, which would show all of it white.
+TEST(ToneMapping, RefusesLightWhoseScaleFloatsDoNotHold) {
+  for (const ToneOperator op : kAll) {
+    ToneOptions options;
+    options.op = op;
+    const auto weak = make_tone_mapping(options, statistics(1e-42));
+    ASSERT_FALSE(weak.ok()) << tone_operator_name(op);
+    EXPECT_EQ(weak.status().code(), ErrorCode::bad_input);
+    EXPECT_NE(weak.status().message().find("another unit"), std::string::npos);
+    EXPECT_TRUE(make_tone_mapping(options, statistics(1e-36)).ok());
+  }
+}
+
 TEST(ToneMapping, RefusesOptionsOutOfRange) {
   const auto refused = [](auto change) {
     ToneOptions o;

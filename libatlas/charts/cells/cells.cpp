@@ -191,6 +191,49 @@ class TriangleGrowth {
   std::uint32_t next_ = 0;  // the first cell of the pieces to come
 };
 
+// Gives cells without area to their neighbours, across the longest edges: nothing can be fitted to
+// them, so they would part what their triangles join.
+void dissolve_thin_cells(const Topology& topology, Cells& cells) {
+  std::vector<std::uint8_t> has_area(cells.count, 0);
+  std::vector<std::uint32_t> thin;
+  for (std::uint32_t t = 0; t < topology.triangle_count(); ++t) {
+    if (cells.of_triangle[t] == kNoIndex) continue;
+    if (!topology.thin(t)) has_area[cells.of_triangle[t]] = 1;
+    if (topology.thin(t)) thin.push_back(t);
+  }
+  const auto lost = [&](std::uint32_t t) { return !has_area[cells.of_triangle[t]]; };
+  std::erase_if(thin, [&](std::uint32_t t) { return !lost(t); });
+  if (thin.empty()) return;
+  for (bool moved = true; moved;) {
+    moved = false;
+    for (const std::uint32_t t : thin) {
+      double longest = -1;
+      std::uint32_t to = kNoIndex;
+      for (std::uint32_t h = 3 * t; h < 3 * t + 3; ++h) {
+        const std::uint32_t o = topology.opposite[h];
+        if (o == kNoIndex || lost(o / 3) || edge_length(topology, h) <= longest) continue;
+        longest = edge_length(topology, h);
+        to = cells.of_triangle[o / 3];
+      }
+      if (to != kNoIndex) cells.of_triangle[t] = to;
+      moved |= to != kNoIndex;
+    }
+    std::erase_if(thin, [&](std::uint32_t t) { return !lost(t); });
+  }
+  std::vector<std::uint32_t> number(cells.count, kNoIndex);
+  for (const std::uint32_t k : cells.of_triangle) {
+    if (k != kNoIndex) number[k] = 0;
+  }
+  std::uint32_t count = 0;
+  for (std::uint32_t& k : number) {
+    if (k != kNoIndex) k = count++;
+  }
+  for (std::uint32_t& k : cells.of_triangle) {
+    if (k != kNoIndex) k = number[k];
+  }
+  cells.count = count;
+}
+
 }  // namespace
 
 Cells grow_cells(const CellInput& input, const CellOptions& options, const Context& context) {
@@ -200,7 +243,9 @@ Cells grow_cells(const CellInput& input, const CellOptions& options, const Conte
   const Grains grains = grow_grains(input);
   const CellSeeds seeds = choose_seeds(input, grains, options, context);
   if (context.cancelled()) return {};
-  return TriangleGrowth(input, grains, seeds).run(context);
+  Cells cells = TriangleGrowth(input, grains, seeds).run(context);
+  if (!context.cancelled()) dissolve_thin_cells(input.topology, cells);
+  return cells;
 }
 
 }  // namespace atlas

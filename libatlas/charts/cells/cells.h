@@ -32,11 +32,12 @@ struct CellInput {
 
 // Grows cells from well-spaced seeds. The distance from seed s to a triangle with normal n is path
 // length times (1 + 8 (1 - n·n_s)), so cells stop at creases. Every cell is connected and lies in
-// one piece. Seeds are chosen on a graph of grains, patches of some ten triangles, by
-// farthest-point sampling (in large pieces after seeds that are merely a few grains apart) and two
-// recentring steps (the alternation of Cohen-Steiner et al. 2004). One pass over the triangles then
-// grows the cells, and pull_teeth() (rims.h) smooths their borders. Cells are numbered by their
-// seeds' place in the mesh. O(n log n) with a small heap.
+// one piece, and none consists of triangles without area alone. Seeds are chosen on a graph of
+// grains, patches of some ten triangles, by farthest-point sampling (in large pieces after seeds
+// that are merely a few grains apart) and two recentring steps (the alternation of Cohen-Steiner et
+// al. 2004). One pass over the triangles then grows the cells, and pull_teeth() (rims.h) smooths
+// their borders. Cells are numbered by their seeds' place in the mesh. O(n log n) with a small
+// heap.
 Cells grow_cells(const CellInput& input, const CellOptions& options, const Context& context);
 
 // Divides cells until the normals of each lie within half-angle `cone` (radians) of one direction.

@@ -1,10 +1,12 @@
 #include "libatlas/charts/mesh/links.h"
 
 #include <algorithm>
+#include <array>
 #include <vector>
 
 #include "libatlas/charts/mesh/fan_pairs.h"
 #include "libatlas/core/glm_bridge.h"
+#include "libatlas/core/predicates.h"
 
 namespace atlas {
 namespace {
@@ -104,6 +106,7 @@ class Linker {
 
   void link_pair(std::uint32_t g, std::uint32_t h) {
     if (third(g) == third(h)) {
+      if (topology_.thin(g / 3)) return;
       mark_duplicate(g, h);
       if (from(g) != from(h)) {
         fins_.push_back({g, h, false});
@@ -111,14 +114,21 @@ class Linker {
         topology_.cut_length += length(g);
       }
     } else if (!may_link(g, h)) {
-      topology_.cut_length += length(g);
+      // A triangle without area that given charts leave out is laid on the other one.
+      const bool thin = topology_.thin(g / 3) || topology_.thin(h / 3);
+      if (!thin || !options_.cut_at_uv_seams) topology_.cut_length += length(g);
     } else {
       link(g, h);
     }
   }
 
   // Not inlined, since the loop over all edges takes a thirtieth longer around it.
-  [[gnu::noinline]] void link_fan(const Edge* begin, const Edge* end) {
+  [[gnu::noinline]] void link_fan(Edge* begin, Edge* end) {
+    // Triangles without area lie in no direction around the edge.
+    end = std::stable_partition(begin, end,
+                                [&](const Edge& e) { return !topology_.thin(e.half_edge / 3); });
+    if (end - begin == 2) return link_pair(begin[0].half_edge, begin[1].half_edge);
+    if (end - begin < 2) return;
     ++topology_.defects.nonmanifold_edges;
     fan_.clear();
     for (const Edge* e = begin; e < end; ++e) {
@@ -195,8 +205,21 @@ class Linker {
     if (!options_.cut_at_uv_seams || mesh_.texcoord_indices.empty()) return true;
     if (border && aspect(s) != aspect(t)) return false;
     const bool aligned = from(g) == from(h);
+    if ((topology_.thin(s) || topology_.thin(t)) && turn(s) * turn(t) != (aligned ? -1 : 1))
+      return false;  // would fold a chart that is usable without it
     return same_texcoord(g, aligned ? h : next_half_edge(h)) &&
            same_texcoord(next_half_edge(g), aligned ? next_half_edge(h) : h);
+  }
+
+  // Returns in which sense the given texcoords run around a triangle; 0: in none.
+  int turn(std::uint32_t t) const {
+    std::array<Vec2d, 3> p;
+    for (std::uint32_t c = 0; c < 3; ++c) {
+      const std::uint32_t i = mesh_.texcoord_indices[3 * std::size_t{t} + c];
+      if (i >= mesh_.texcoords.size()) return 0;
+      p[c] = {mesh_.texcoords[i].x, mesh_.texcoords[i].y};
+    }
+    return orientation(p[0], p[1], p[2]);
   }
 
   double aspect(std::uint32_t t) const { return options_.uv_aspects.of(mesh_.materials[t]); }

@@ -8,6 +8,7 @@
 
 #include "libatlas/charts/mesh/links.h"
 #include "libatlas/charts/mesh/noise.h"
+#include "libatlas/charts/mesh/thin.h"
 #include "libatlas/charts/mesh/weld.h"
 #include "libatlas/core/clock.h"
 #include "libatlas/core/glm_bridge.h"
@@ -91,11 +92,15 @@ glm::dvec3 point(const Topology& topology, std::uint32_t corner) {
   return to_dvec(topology.points[topology.corner_vertex[corner]]);
 }
 
-void measure_triangles(Topology& topology) {
+// Returns the triangles whose normals are to be borrowed; without `borrow`, only those without
+// area.
+std::vector<std::uint32_t> measure_triangles(Topology& topology, bool borrow) {
   const std::size_t n = topology.corner_vertex.size() / 3;
   topology.normals.assign(n, Vec3f{});
   topology.areas.assign(n, 0.0f);
   topology.flags.assign(n, 0);
+  const RoundingLimit limit(topology);
+  std::vector<std::uint32_t> thin;
   for (std::uint32_t t = 0; t < n; ++t) {
     const glm::dvec3 a = point(topology, 3 * t), b = point(topology, 3 * t + 1),
                      c = point(topology, 3 * t + 2);
@@ -104,13 +109,18 @@ void measure_triangles(Topology& topology) {
     const double longest =
         std::max({glm::dot(b - a, b - a), glm::dot(c - a, c - a), glm::dot(c - b, c - b)});
     if (!(twice > kDegenerateShare * longest)) {
-      topology.flags[t] = Topology::kDegenerate;
+      const std::uint32_t* v = &topology.corner_vertex[3 * std::size_t{t}];
+      const bool corners = v[0] != v[1] && v[1] != v[2] && v[2] != v[0];
+      topology.flags[t] = corners ? Topology::kThin : Topology::kDegenerate;
+      if (topology.thin(t)) thin.push_back(t);
       ++topology.defects.degenerate_triangles;
       continue;
     }
     topology.normals[t] = from_glm(glm::vec3(cross / twice));
     topology.areas[t] = static_cast<float>(0.5 * twice);
+    if (borrow && limit.blurs({a, b, c}, cross, longest)) thin.push_back(t);
   }
+  return thin;
 }
 
 // Numbers the pieces and finds the triangles that must be turned so that neighbours agree. Where no
@@ -302,9 +312,11 @@ Result<Topology> build_topology(const MeshView& mesh, const TopologyOptions& opt
     if (Status status = check_positions(mesh, used); !status.ok()) return status;
     take_vertices(mesh, weld_vertices(mesh.positions, used), topology);
   }
-  measure_triangles(topology);
+  // Given charts are kept whatever the normals are.
+  std::vector<std::uint32_t> thin = measure_triangles(topology, !options.cut_at_uv_seams);
   if (context.cancelled()) return Status::cancelled();
   link_half_edges(mesh, options, topology);
+  borrow_normals(topology, std::move(thin));
   if (context.cancelled()) return Status::cancelled();
   Pieces(topology).run();
   count_nonmanifold_vertices(topology);

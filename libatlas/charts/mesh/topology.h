@@ -25,8 +25,9 @@ struct TopologyDefects {
 // Half-edges are numbered as in core/half_edge.h.
 struct Topology {
   enum Flag : std::uint8_t {
-    kDegenerate = 1,  // without area: linked to nothing
+    kDegenerate = 1,  // without area, and linked to nothing with area
     kFlipped = 2,     // corners 1 and 2 are swapped against the input
+    kThin = 4,        // without area, but linked: its area is 0, its normal a neighbour's
   };
 
   std::vector<Vec3f> points;                 // welded and scaled, one per vertex
@@ -52,6 +53,7 @@ struct Topology {
 
   std::size_t triangle_count() const { return flags.size(); }
   bool degenerate(std::uint32_t t) const { return flags[t] & kDegenerate; }
+  bool thin(std::uint32_t t) const { return flags[t] & kThin; }
   const Vec3f& calm_normal(std::uint32_t t) const {
     return calm_normals.empty() ? normals[t] : calm_normals[t];
   }

@@ -1,0 +1,71 @@
+#include "libatlas/uvs/written_stretch.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <vector>
+
+namespace atlas {
+namespace {
+
+// A unit square of two triangles, placed with a turn and a density of 20 by 30 texels a unit.
+struct Square {
+  std::vector<Vec3f> positions{{5, 0, 0}, {6, 0, 0}, {6, 1, 0}, {5, 1, 0}};
+  std::vector<std::uint32_t> indices{0, 1, 2, 0, 2, 3};
+  ChartSet charts;
+  std::vector<ChartPlacement> placements{1};
+  std::vector<Extent> pages{{256, 128}};
+
+  Square() {
+    Chart chart;
+    chart.triangle_count = 2;
+    chart.uv_count = 4;
+    charts.charts = {chart};
+    charts.uvs = {{0, 0}, {1, 0}, {1, 1}, {0, 1}};
+    charts.uv_vertex = {0, 1, 2, 3};
+    charts.triangle_uv = indices;
+    charts.triangle_chart = {0, 0};
+    charts.chart_triangles = {0, 1};
+    placements[0].page = 0;
+    placements[0].texels_per_unit = {20, 30};
+    placements[0].cosine = 0.6;
+    placements[0].sine = 0.8;
+    placements[0].offset = {60, 7};
+  }
+
+  // Measures with uvs `wide` times as wide as the surface.
+  WrittenStretch measure(double wide, double max_stretch) const {
+    std::vector<Vec2f> uvs;
+    for (const Vec2d& uv : charts.uvs) {
+      const Vec2d texel = page_texel(placements[0], {wide * uv.x, uv.y});
+      uvs.push_back({float(texel.x / 256), float(texel.y / 128)});
+    }
+    MeshView mesh;
+    mesh.positions = positions;
+    return measure_written(mesh, {charts, placements, pages}, uvs, max_stretch, {});
+  }
+};
+
+// At the scale that keeps the area, a map that is a times as wide stretches by the root of a.
+TEST(WrittenStretch, IsThatOfTheUvsGiven) {
+  const Square square;
+  EXPECT_NEAR(square.measure(1, 1.25).stretch_999, 1, 1e-5);
+  EXPECT_NEAR(square.measure(1.69, 1.25).stretch_999, 1.3, 1e-5);
+  EXPECT_NEAR(square.measure(1 / 1.69, 1.25).stretch_999, 1.3, 1e-5);
+}
+
+TEST(WrittenStretch, CountsChartsThatRoundingBringsBeyondTheBound) {
+  Square square;
+  EXPECT_EQ(square.measure(1, 1.25).beyond, 0u);
+  EXPECT_EQ(square.measure(1.252 * 1.252, 1.25).beyond, 0u);  // as little as dense meshes have
+  EXPECT_EQ(square.measure(1.26 * 1.26, 1.25).beyond, 1u);
+  EXPECT_EQ(square.measure(1.0005 * 1.0005, 1.0001).beyond, 1u);
+  square.charts.charts[0].distortion.stretch_999 = 1.3;  // beyond it before, too
+  EXPECT_EQ(square.measure(1.26 * 1.26, 1.25).beyond, 0u);
+  square.charts.charts[0].distortion.stretch_999 = 1;
+  square.charts.charts[0].kept = true;
+  EXPECT_EQ(square.measure(1.26 * 1.26, 1.25).beyond, 0u);
+}
+
+}  // namespace
+}  // namespace atlas
