@@ -1,6 +1,7 @@
 // Internal. A chart of micro-cells, as it is known while charts are merged.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <glm/geometric.hpp>
 #include <glm/vec3.hpp>
@@ -17,6 +18,7 @@ struct CoarseChart {
   Moments moments{};
   glm::dvec3 normal_sum{0};
   double area = 0, perimeter = 0;
+  std::size_t slots = 0;      // of its cells
   double energy = 0;          // area times (L2 stretch squared - 1) of its coarse flattening
   double high_area = 0;       // area of that flattening stretched beyond TrialLimits::stretch_high
   double box = 0;             // area of the smallest rectangle around it; 0: not known yet

@@ -7,8 +7,10 @@
 #include <queue>
 
 #include "libatlas/charts/geometry/moments.h"
+#include "libatlas/charts/merging/candidate.h"
 #include "libatlas/charts/merging/coarse_chart.h"
 #include "libatlas/charts/merging/cost_classes.h"
+#include "libatlas/charts/merging/merge_budget.h"
 #include "libatlas/charts/merging/runs.h"
 #include "libatlas/core/glm_bridge.h"
 #include "libatlas/core/parallel.h"
@@ -21,15 +23,6 @@ constexpr double kHiddenSeam = 0.75;
 // Under a cone limit charts are small and their outlines hardly matter; the number of charts does.
 constexpr double kConeWeight = 1;
 constexpr double kConeFill = 0.4;  // of both convex hull and rectangle
-
-struct Candidate {
-  double cost;
-  std::uint32_t a, b, version_a, version_b;
-  bool operator>(const Candidate& other) const {
-    if (cost != other.cost) return cost > other.cost;
-    return a != other.a ? a > other.a : b > other.b;
-  }
-};
 
 struct Border {
   std::uint32_t other;
@@ -57,10 +50,13 @@ class Merger {
   void run(const std::vector<std::uint32_t>& cells, const Context& context) {
     charts_.resize(cells.size());
     for (std::uint32_t i = 0; i < cells.size(); ++i) place_[cells[i]] = i;
+    std::size_t slots = 0;
     for (const std::uint32_t k : cells) {
       start(k);
       piece_area_ += mesh_.cells[k].area;
+      slots += mesh_.cells[k].slot_count;
     }
+    budget_ = MergeBudget(slots);
     for (const std::uint32_t k : cells) push_neighbours(k, true);
     empty_heap(context);
     relaxed_ = true;
@@ -70,18 +66,30 @@ class Merger {
     empty_heap(context);
   }
 
+  // Tries the candidates in order of cost; once the budget makes it thrifty, lopsided ones last.
   void empty_heap(const Context& context) {
-    while (!heap_.empty() && !context.cancelled()) {
-      const Candidate candidate = heap_.top();
-      heap_.pop();
-      if (chart(candidate.a).version != candidate.version_a ||
-          chart(candidate.b).version != candidate.version_b) {
-        continue;
+    std::vector<Candidate> later;
+    for (bool postpone = true; !heap_.empty(); postpone = false) {
+      while (!heap_.empty()) {
+        if (context.cancelled()) return;
+        const Candidate candidate = heap_.top();
+        heap_.pop();
+        const CoarseChart &p = chart(candidate.a), &q = chart(candidate.b);
+        if (p.version != candidate.version_a || q.version != candidate.version_b) continue;
+        const bool free = coplanar(p, q);
+        if (!free && !budget_.affords(p.slots, q.slots)) continue;
+        if (!free && postpone && budget_.postpones(p.slots, q.slots)) {
+          later.push_back(candidate);
+        } else {
+          try_merge(candidate.a, candidate.b);
+        }
       }
-      try_merge(candidate.a, candidate.b);
+      for (const Candidate& candidate : later) heap_.push(candidate);
+      later.clear();
     }
   }
 
+  std::uint64_t work() const { return budget_.work(); }
   std::uint64_t trials = 0, rejections = 0;
 
  private:
@@ -100,6 +108,7 @@ class Merger {
     own.moments = cell.moments;
     own.normal_sum = to_glm(cell.normal_sum);
     own.area = cell.area;
+    own.slots = cell.slot_count;
     own.version = 1;
     own.flat = in_one_plane(own);
     if (options_.cone > 0) result_.chart_axis[k] = from_glm(glm::vec3(to_glm(cell.normal)));
@@ -143,6 +152,7 @@ class Merger {
 
   void push_neighbours(std::uint32_t a, bool once) {
     find_borders(a);
+    budget_.count_borders(chart(a).arcs.size());
     for (const Border& border : borders_) {
       if (once && border.other < a) continue;
       if (relaxed_ &&
@@ -236,16 +246,17 @@ class Merger {
     if (refused(a, b, spare, spare_area) || refused(b, a, spare, spare_area)) {
       return {.euler = trial_.euler(p.euler, q.euler, glue_)};
     }
+    budget_.count_trial(p.slots + q.slots);
     const TrialOutcome outcome = trial_.run({p.cells, q.cells, glue_}, result_.joined, limits);
     unrolls_ = outcome.unrolled;
     high_area_ = outcome.high_area;
     euler_ = outcome.euler;
     if (outcome.accepted) {
       energy_ = area * (outcome.stretch_l2 * outcome.stretch_l2 - 1);
-    } else if (outcome.energy > 0 || outcome.high_area > 0) {
+    } else if (outcome.energy > 0 || outcome.high_area > 0 || budget_.thrifty()) {
       chart(a).refusals.push_back({b, outcome.energy - p.energy - q.energy,
                                    outcome.high_area - p.high_area - q.high_area, outcome.settled,
-                                   outcome.entangled, glue_});
+                                   outcome.entangled, glue_, p.slots, q.slots});
     }
     return outcome;
   }
@@ -278,12 +289,15 @@ class Merger {
   }
 
   // Whether an earlier trial of parts of the two charts shows that joining them would fail, or cost
-  // more than the given energy or area.
-  bool refused(std::uint32_t a, std::uint32_t b, double energy, double high_area) const {
-    for (const Refusal& r : chart(a).refusals) {
-      if (result_.chart_of_cell[r.cell] == b && fails_again(r, glue_, energy, high_area)) {
+  // more than the given energy or area; with little budget left, also that it probably would.
+  bool refused(std::uint32_t a, std::uint32_t b, double energy, double high_area) {
+    const CoarseChart &p = chart(a), &q = chart(b);
+    budget_.count_refusals(p.refusals.size());
+    for (const Refusal& r : p.refusals) {
+      if (result_.chart_of_cell[r.cell] != b) continue;
+      if (fails_again(r, glue_, energy, high_area)) return true;
+      if (budget_.thrifty() && p.slots < 2 * r.own_slots && q.slots < 2 * r.other_slots)
         return true;
-      }
     }
     return false;
   }
@@ -322,6 +336,7 @@ class Merger {
     std::move(q.refusals.begin(), q.refusals.end(), std::back_inserter(p.refusals));
     std::erase_if(p.refusals, [&](const Refusal& r) { return result_.chart_of_cell[r.cell] == a; });
     p.area += q.area;
+    p.slots += q.slots;
     p.normal_sum += q.normal_sum;
     for (int i = 0; i < 6; ++i) p.moments[i] += q.moments[i];
     ++p.version;
@@ -337,6 +352,7 @@ class Merger {
   Trial& trial_;
   std::priority_queue<Candidate, std::vector<Candidate>, std::greater<>> heap_;
   CostClasses cost_classes_;
+  MergeBudget budget_;
   std::vector<Border> borders_;
   std::vector<std::uint32_t> glue_;
   std::vector<Vec3f> normals_;  // of the candidate, under a cone limit
@@ -368,7 +384,7 @@ MergeResult merge_cells(const CoarseMesh& mesh, const std::vector<std::uint32_t>
   }
   const Fans fans(mesh);
   TrialScratch scratch(mesh);
-  std::atomic<std::uint64_t> trials{0}, rejections{0};
+  std::atomic<std::uint64_t> trials{0}, rejections{0}, work{0};
   const std::size_t grain = std::max<std::size_t>(1, pieces.size() / 64);
   parallel_for(context, pieces.size(), grain, [&](std::size_t begin, std::size_t end) {
     Trial trial(mesh, fans, scratch, result.uv);
@@ -376,11 +392,13 @@ MergeResult merge_cells(const CoarseMesh& mesh, const std::vector<std::uint32_t>
       Merger merger({mesh, options, place, result}, trial);
       merger.run(pieces[i], context);
       trials += merger.trials;
+      work += merger.work();
       rejections += merger.rejections;
     }
   });
   result.trials = trials;
   result.rejections = rejections;
+  result.work = work;
   return result;
 }
 

@@ -18,6 +18,7 @@ struct MergeResult {
   std::vector<Vec3f> chart_axis;     // by chart_of_cell; only with a cone limit
   CoarseUv uv;                       // the coarse flattening of every chart
   std::uint64_t trials = 0, rejections = 0;
+  std::uint64_t work = 0;  // of all pieces, in the unit of MergeBudget
 };
 
 // Merges neighbouring charts, cheapest first. The cost is low for a small spread of the normals off

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
@@ -14,6 +15,8 @@ struct Refusal {
   double energy, high_area;
   bool settled, entangled;          // as in TrialOutcome
   std::vector<std::uint32_t> glue;  // ascending
+  // Of the chart that it is stored with, and of the other one, at that time.
+  std::size_t own_slots = 0, other_slots = 0;
 };
 
 // Whether a trial of larger charts along `glue` (ascending) is known to fail if it may cost at most
