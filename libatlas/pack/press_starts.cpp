@@ -39,8 +39,8 @@ constexpr std::size_t kLeastLeft = 4, kFewCharts = 5;
 constexpr std::uint64_t kSearchWork = 160'000'000;
 constexpr std::uint64_t kLayouts = 32;  // layouts of one start
 // Of the starts of a round, so many are made lower by letting charts overlap for a while, with this
-// work in words for each. Twice the work fills 0.1 points more and takes a quarter of all time
-// more.
+// work in words for each. With twice the work pages fill 0.1 points more, and packing takes a
+// quarter longer.
 constexpr std::size_t kLowered = 4;
 constexpr std::uint64_t kOverlapWork = 10'000'000;
 // Maximum number of doublings: `best` doubles kSearchWork, kLayouts and kOverlapWork each round.
