@@ -12,23 +12,23 @@
 namespace atlas::pack {
 namespace {
 
-using Column = std::int32_t __attribute__((vector_size(32)));
-static_assert(sizeof(Column) == WeightMap::kColumn * sizeof(std::int32_t));
+using Column = std::uint32_t __attribute__((vector_size(32)));
+static_assert(sizeof(Column) == WeightMap::kColumn * sizeof(std::uint32_t));
 
-ATLAS_INLINE Column load(const std::int32_t* from) {
+ATLAS_INLINE Column load(const std::uint32_t* from) {
   Column column;
   std::memcpy(&column, from, sizeof column);
   return column;
 }
 
-ATLAS_INLINE std::int32_t least(const Column& column) {
-  std::int32_t low = column[0];
+ATLAS_INLINE std::uint32_t least(const Column& column) {
+  std::uint32_t low = column[0];
   for (int k = 1; k < WeightMap::kColumn; ++k) low = std::min(low, column[k]);
   return low;
 }
 
 // Sums over the runs of the mask. `base` is the cell at which the mask's box begins.
-ATLAS_INLINE Column weights(const Mask& mask, const std::int32_t* base, std::int32_t stride,
+ATLAS_INLINE Column weights(const Mask& mask, const std::uint32_t* base, std::int32_t stride,
                             std::int32_t most) {
   constexpr std::int32_t kRows = 16;  // rows between two looks at whether it is too heavy
   Column sum{};
@@ -39,18 +39,18 @@ ATLAS_INLINE Column weights(const Mask& mask, const std::int32_t* base, std::int
         sum += load(base + std::ptrdiff_t(run.end) * stride + r);
         sum -= load(base + std::ptrdiff_t(run.begin) * stride + r);
       }
-    if (least(sum) > most) break;
+    if (least(sum) > std::uint32_t(most)) break;
   }
   return sum;
 }
 
-ATLAS_WIDE Column* weights_wide(const Mask& mask, const std::int32_t* base, std::int32_t stride,
+ATLAS_WIDE Column* weights_wide(const Mask& mask, const std::uint32_t* base, std::int32_t stride,
                                 std::int32_t most, Column* to) {
   *to = weights(mask, base, stride, most);
   return to;
 }
 
-ATLAS_INLINE void sum_columns(const std::int32_t* steps, std::int32_t* sums, std::int32_t width,
+ATLAS_INLINE void sum_columns(const std::uint32_t* steps, std::uint32_t* sums, std::int32_t width,
                               std::int32_t stride) {
   for (std::int32_t y = 0; y < stride; y += WeightMap::kColumn) {
     Column weight{}, sum{};
@@ -63,8 +63,8 @@ ATLAS_INLINE void sum_columns(const std::int32_t* steps, std::int32_t* sums, std
   }
 }
 
-ATLAS_WIDE void sum_columns_wide(const std::int32_t* steps, std::int32_t* sums, std::int32_t width,
-                                 std::int32_t stride) {
+ATLAS_WIDE void sum_columns_wide(const std::uint32_t* steps, std::uint32_t* sums,
+                                 std::int32_t width, std::int32_t stride) {
   sum_columns(steps, sums, width, stride);
 }
 
@@ -84,8 +84,8 @@ void WeightMap::clear() {
 void WeightMap::add(const Mask& mask, BitPage::Place at, std::int32_t weight) {
   for (std::int32_t r = 0; r < mask.height; ++r)
     for (const Run& run : mask.row(r)) {
-      steps_[index(at.x + run.begin, at.y + r)] += weight;
-      steps_[index(at.x + run.end, at.y + r)] -= weight;
+      steps_[index(at.x + run.begin, at.y + r)] += std::uint32_t(weight);
+      steps_[index(at.x + run.end, at.y + r)] -= std::uint32_t(weight);
     }
 }
 
@@ -99,14 +99,15 @@ void WeightMap::sum() {
 WeightMap::Lightest WeightMap::weigh(const Mask& mask, BitPage::Place lowest, std::int32_t count,
                                      std::int32_t most) const {
   Column column;
-  const std::int32_t* const base = sums_.data() + index(lowest.x, lowest.y);
+  const std::uint32_t* const base = sums_.data() + index(lowest.x, lowest.y);
   if (has_wide_vectors)
     weights_wide(mask, base, stride_, most, &column);
   else
     column = weights(mask, base, stride_, most);
-  Lightest best{column[0], lowest};
+  Lightest best{std::int32_t(column[0]), lowest};
   for (std::int32_t k = 1; k < count; ++k)
-    if (column[k] < best.weight) best = {column[k], {lowest.x, lowest.y + k}};
+    if (column[k] < std::uint32_t(best.weight))
+      best = {std::int32_t(column[k]), {lowest.x, lowest.y + k}};
   return best;
 }
 

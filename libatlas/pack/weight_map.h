@@ -19,8 +19,8 @@ class WeightMap {
   // Both sides are in cells.
   WeightMap(std::int32_t width, std::int32_t height);
 
-  // The map is filled by clear(), any number of calls of add(), and sum(). The product of the
-  // weights and the cells of all masks must be below 2^31. Masks must lie within the strip.
+  // The map is filled by clear(), any number of calls of add(), and sum(). Masks must lie within
+  // the strip, and no place that is weighed may be as heavy as 2^31.
   void clear();
   void add(const Mask& mask, BitPage::Place at, std::int32_t weight);
   void sum();
@@ -39,13 +39,13 @@ class WeightMap {
 
  private:
   // Columns of cells follow one another, and a column begins with row 0. In `sums_`, every cell
-  // holds the sum of the weights to its left.
+  // holds the sum of the weights to its left. It may wrap around: only differences are used.
   std::size_t index(std::int32_t x, std::int32_t y) const {
     return std::size_t(x) * std::size_t(stride_) + std::size_t(y);
   }
 
   std::int32_t width_, stride_;
-  std::vector<std::int32_t> steps_, sums_;
+  std::vector<std::uint32_t> steps_, sums_;
 };
 
 }  // namespace atlas::pack

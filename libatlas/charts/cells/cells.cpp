@@ -198,8 +198,11 @@ void dissolve_thin_cells(const Topology& topology, Cells& cells) {
   std::vector<std::uint32_t> thin;
   for (std::uint32_t t = 0; t < topology.triangle_count(); ++t) {
     if (cells.of_triangle[t] == kNoIndex) continue;
-    if (!topology.thin(t)) has_area[cells.of_triangle[t]] = 1;
-    if (topology.thin(t)) thin.push_back(t);
+    if (topology.thin(t)) {
+      thin.push_back(t);
+    } else {
+      has_area[cells.of_triangle[t]] = 1;
+    }
   }
   const auto lost = [&](std::uint32_t t) { return !has_area[cells.of_triangle[t]]; };
   std::erase_if(thin, [&](std::uint32_t t) { return !lost(t); });
