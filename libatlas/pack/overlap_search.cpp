@@ -12,6 +12,7 @@ namespace atlas::pack {
 namespace {
 
 constexpr std::int32_t kColumn = WeightMap::kColumn;
+constexpr std::int32_t kLight = PairOverlaps::kLeastWeight;
 constexpr std::int32_t kUnweighed = std::numeric_limits<std::int32_t>::max();
 // Rounds without less overlap after which the least overlap so far is tried again with equal
 // weights. With half as many rounds strips become less low; twice as many win nothing.
@@ -76,8 +77,7 @@ class OverlapSearch {
         vain_ = 0;
       } else if (++vain_ > kVainRounds) {
         for (const std::uint32_t i : pairs_.taking_part()) put(i, kept_[i]);
-        pairs_.reset();
-        vain_ = 0;
+        begin_anew();
       }
       pairs_.raise_weights();
       move_all();
@@ -131,10 +131,17 @@ class OverlapSearch {
       p.at.y = std::min(p.at.y, height_ - mask(i, p.direction).height);
       put(i, p);
     }
-    pairs_.reset();
+    begin_anew();
     least_ = std::numeric_limits<std::int64_t>::max();
-    vain_ = 0;
     return true;
+  }
+
+  // Measures all pairs, which get equal weights.
+  void begin_anew() {
+    pairs_.reset();
+    map_.clear();
+    for (const std::uint32_t i : pairs_.taking_part()) map_.add(mask(i), places_[i].at, kLight);
+    vain_ = 0;
   }
 
   // Moves all pieces that overlap others, in random order.
@@ -149,12 +156,8 @@ class OverlapSearch {
   }
 
   void move(std::uint32_t i) {
-    map_.clear();
-    for (const std::uint32_t j : pairs_.taking_part()) {
-      if (j == i) continue;
-      map_.add(mask(j), places_[j].at, pairs_.weight(i, j));
-      work_ += mask(j).runs.size();
-    }
+    map_.add(mask(i), places_[i].at, -kLight);
+    add_heavy_pairs(i, 1);
     map_.sum();
     work_ += std::uint64_t(options_.width) * std::uint64_t(height_) / kColumn;
 
@@ -165,8 +168,23 @@ class OverlapSearch {
       refine(i, c);
       if (c.weight < lightest.weight) lightest = c;
     }
+    add_heavy_pairs(i, -1);
     put(i, {true, lightest.direction, lightest.at});
-    pairs_.measure(i);
+    map_.add(mask(i), places_[i].at, kLight);
+    if (lightest.weight == 0)
+      pairs_.set_free(i);
+    else
+      pairs_.measure(i);
+  }
+
+  // Adds `times` what the weights of the pairs of i exceed the least weight by.
+  void add_heavy_pairs(std::uint32_t i, std::int32_t times) {
+    for (const std::uint32_t j : pairs_.taking_part()) {
+      if (j == i) continue;
+      const std::int32_t more = pairs_.weight(i, j) - kLight;
+      if (more > 0) map_.add(mask(j), places_[j].at, times * more);
+      if (times > 0) work_ += mask(j).runs.size();
+    }
   }
 
   // Weighs places everywhere and near the present one until one is free.
@@ -245,7 +263,7 @@ class OverlapSearch {
   std::vector<NestPlace> places_, kept_;
   std::vector<PlacedMask> masks_;  // those of places_
   std::int32_t height_;
-  WeightMap map_;
+  WeightMap map_;  // all masks have the weight kLight, except during a move
   PairOverlaps pairs_;
   Random random_;
   std::vector<std::uint32_t> order_;

@@ -9,12 +9,13 @@ std::int32_t shared_cells(const PlacedMask& a, const PlacedMask& b) {
   if (p.x >= q.x + b.mask->width || q.x >= p.x + a.mask->width) return 0;
   const std::int32_t from = std::max(p.y, q.y);
   const std::int32_t to = std::min(p.y + a.mask->height, q.y + b.mask->height);
+  const std::int32_t shift = p.x - q.x;
   std::int32_t cells = 0;
   for (std::int32_t y = from; y < to; ++y)
     for (const Run& r : a.mask->row(y - p.y))
       for (const Run& s : b.mask->row(y - q.y)) {
-        const std::int32_t begin = std::max(r.begin + p.x, s.begin + q.x);
-        cells += std::max(0, std::min(r.end + p.x, s.end + q.x) - begin);
+        const std::int32_t begin = std::max(r.begin + shift, s.begin);
+        cells += std::max(0, std::min(r.end + shift, s.end) - begin);
       }
   return cells;
 }
@@ -41,10 +42,17 @@ void PairOverlaps::measure(std::uint32_t i) {
 }
 
 void PairOverlaps::measure(std::uint32_t i, std::uint32_t j) {
-  const std::int32_t now = shared_cells(masks_[i], masks_[j]);
-  const std::int32_t more = now - cells_[pair(i, j)];
+  set(i, j, shared_cells(masks_[i], masks_[j]));
+}
+
+void PairOverlaps::set_free(std::uint32_t i) {
+  for (const std::uint32_t j : taking_part_) set(i, j, 0);
+}
+
+void PairOverlaps::set(std::uint32_t i, std::uint32_t j, std::int32_t cells) {
+  const std::int32_t more = cells - cells_[pair(i, j)];
   if (more == 0) return;
-  cells_[pair(i, j)] = cells_[pair(j, i)] = now;
+  cells_[pair(i, j)] = cells_[pair(j, i)] = cells;
   of_mask_[i] += more;
   of_mask_[j] += more;
   total_ += more;

@@ -50,35 +50,48 @@ ATLAS_WIDE Column* weights_wide(const Mask& mask, const std::uint32_t* base, std
   return to;
 }
 
-ATLAS_INLINE void sum_columns(const std::uint32_t* steps, std::uint32_t* sums, std::int32_t width,
-                              std::int32_t stride) {
-  for (std::int32_t y = 0; y < stride; y += WeightMap::kColumn) {
-    Column weight{}, sum{};
-    for (std::int32_t x = 0; x <= width; ++x) {
-      const std::size_t at = std::size_t(x) * std::size_t(stride) + std::size_t(y);
-      std::memcpy(sums + at, &sum, sizeof sum);
-      weight += load(steps + at);
-      sum += weight;
+// Rows that are summed together: those of a cache line. They are summed from their first column
+// that changed.
+constexpr std::int32_t kColumnsABand = 2, kBand = kColumnsABand * WeightMap::kColumn;
+
+ATLAS_INLINE void sum_band(const std::uint32_t* steps, std::uint32_t* sums, std::int32_t columns,
+                           std::ptrdiff_t stride) {
+  Column weight[kColumnsABand], sum[kColumnsABand];
+  for (int k = 0; k < kColumnsABand; ++k) {
+    const std::uint32_t* const before = sums + k * WeightMap::kColumn;
+    sum[k] = load(before);
+    weight[k] = sum[k] - load(before - stride);
+  }
+  for (; columns > 0; --columns) {
+    for (int k = 0; k < kColumnsABand; ++k) {
+      weight[k] += load(steps + k * WeightMap::kColumn);
+      sum[k] += weight[k];
+      std::memcpy(sums + stride + k * WeightMap::kColumn, &sum[k], sizeof sum[k]);
     }
+    steps += stride;
+    sums += stride;
   }
 }
 
-ATLAS_WIDE void sum_columns_wide(const std::uint32_t* steps, std::uint32_t* sums,
-                                 std::int32_t width, std::int32_t stride) {
-  sum_columns(steps, sums, width, stride);
+ATLAS_WIDE void sum_band_wide(const std::uint32_t* steps, std::uint32_t* sums, std::int32_t columns,
+                              std::ptrdiff_t stride) {
+  sum_band(steps, sums, columns, stride);
 }
 
 }  // namespace
 
 // The stride leaves room for a column that begins with the highest row.
 WeightMap::WeightMap(std::int32_t width, std::int32_t height)
-    : width_(width), stride_((height + 2 * kColumn - 1) / kColumn * kColumn) {
+    : width_(width), stride_((height + kColumn - 1 + kBand - 1) / kBand * kBand) {
   steps_.resize(index(width + 1, 0));
-  sums_.resize(index(width + 1, 0));
+  sums_.resize(index(width + 2, 0));
+  changed_.resize(std::size_t(stride_ / kBand));
+  clear();
 }
 
 void WeightMap::clear() {
   std::fill(steps_.begin(), steps_.end(), 0);
+  std::fill(changed_.begin(), changed_.end(), 0);
 }
 
 void WeightMap::add(const Mask& mask, BitPage::Place at, std::int32_t weight) {
@@ -87,19 +100,25 @@ void WeightMap::add(const Mask& mask, BitPage::Place at, std::int32_t weight) {
       steps_[index(at.x + run.begin, at.y + r)] += std::uint32_t(weight);
       steps_[index(at.x + run.end, at.y + r)] -= std::uint32_t(weight);
     }
+  for (std::int32_t band = at.y / kBand; band * kBand < at.y + mask.height; ++band)
+    changed_[std::size_t(band)] = std::min(changed_[std::size_t(band)], at.x);
 }
 
 void WeightMap::sum() {
-  if (has_wide_vectors)
-    sum_columns_wide(steps_.data(), sums_.data(), width_, stride_);
-  else
-    sum_columns(steps_.data(), sums_.data(), width_, stride_);
+  for (std::size_t band = 0; band < changed_.size(); ++band) {
+    const std::int32_t x = changed_[band];
+    changed_[band] = width_;
+    if (x >= width_) continue;
+    const std::int32_t y = std::int32_t(band) * kBand;
+    const auto sum = has_wide_vectors ? sum_band_wide : sum_band;
+    sum(steps_.data() + index(x, y), sums_.data() + index(x + 1, y), width_ - x, stride_);
+  }
 }
 
 WeightMap::Lightest WeightMap::weigh(const Mask& mask, BitPage::Place lowest, std::int32_t count,
                                      std::int32_t most) const {
   Column column;
-  const std::uint32_t* const base = sums_.data() + index(lowest.x, lowest.y);
+  const std::uint32_t* const base = sums_.data() + index(lowest.x + 1, lowest.y);
   if (has_wide_vectors)
     weights_wide(mask, base, stride_, most, &column);
   else

@@ -19,8 +19,9 @@ class WeightMap {
   // Both sides are in cells.
   WeightMap(std::int32_t width, std::int32_t height);
 
-  // The map is filled by clear(), any number of calls of add(), and sum(). Masks must lie within
-  // the strip, and no place that is weighed may be as heavy as 2^31.
+  // Masks are added, and removed by adding them with the negative weight. They must lie within the
+  // strip. sum() must follow before places are weighed; it only looks at what has changed. No place
+  // that is weighed may be as heavy as 2^31.
   void clear();
   void add(const Mask& mask, BitPage::Place at, std::int32_t weight);
   void sum();
@@ -38,14 +39,17 @@ class WeightMap {
                  std::int32_t most) const;
 
  private:
-  // Columns of cells follow one another, and a column begins with row 0. In `sums_`, every cell
-  // holds the sum of the weights to its left. It may wrap around: only differences are used.
+  // Columns of cells follow one another, and a column begins with row 0.
   std::size_t index(std::int32_t x, std::int32_t y) const {
     return std::size_t(x) * std::size_t(stride_) + std::size_t(y);
   }
 
   std::int32_t width_, stride_;
+  // In `steps_`, every cell holds by how much it is heavier than the cell to its left. In `sums_`,
+  // it holds the sum of the weights to its left, which may wrap around: only differences are used.
+  // `sums_` begins with an empty column, so that column x is its column x + 1.
   std::vector<std::uint32_t> steps_, sums_;
+  std::vector<std::int32_t> changed_;  // for each band of rows: its first column that changed
 };
 
 }  // namespace atlas::pack
