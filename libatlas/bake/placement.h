@@ -50,4 +50,11 @@ inline Vec2d page_texel(const ChartPlacement& p, Vec2d uv) {
   return {p.offset.x + p.cosine * u - p.sine * v, p.offset.y + p.sine * u + p.cosine * v};
 }
 
+// Undoes page_texel(): returns the chart uv at a page position in texels.
+inline Vec2d chart_uv(const ChartPlacement& p, Vec2d texel) {
+  const double x = texel.x - p.offset.x, y = texel.y - p.offset.y;
+  return {(p.cosine * x + p.sine * y) / p.texels_per_unit.x,
+          (p.cosine * y - p.sine * x) / p.texels_per_unit.y};
+}
+
 }  // namespace atlas

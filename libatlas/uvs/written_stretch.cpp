@@ -11,13 +11,6 @@
 namespace atlas {
 namespace {
 
-// Undoes page_texel().
-Vec2d chart_uv(const ChartPlacement& p, Vec2d texel) {
-  const double x = texel.x - p.offset.x, y = texel.y - p.offset.y;
-  return {(p.cosine * x + p.sine * y) / p.texels_per_unit.x,
-          (p.cosine * y - p.sine * x) / p.texels_per_unit.y};
-}
-
 class Meter {
  public:
   Meter(const MeshView& mesh, const PlacedCharts& placed, std::span<const Vec2f> uvs)

@@ -35,6 +35,21 @@ TEST(Placement, NeverMirrors) {
   }
 }
 
+TEST(Placement, IsUndone) {
+  ChartPlacement p;
+  p.offset = {40, -7};
+  p.cosine = 0.6;
+  p.sine = -0.8;
+  p.texels_per_unit = {4, 4};
+  const Vec2d uv = chart_uv(p, page_texel(p, {2.5, -1.25}));
+  EXPECT_NEAR(uv.x, 2.5, 1e-12);
+  EXPECT_NEAR(uv.y, -1.25, 1e-12);
+  p.width = 8;
+  p.texels_per_unit = {3, 5};
+  turn_in_box(p, true);
+  EXPECT_EQ(chart_uv(p, page_texel(p, {2, 7})), (Vec2d{2, 7}));
+}
+
 TEST(Placement, PadsByHalfATexelOfTheCoarsestLevel) {
   EXPECT_EQ(gutter_pad(0), 1);
   EXPECT_EQ(gutter_pad(1), 1);

@@ -191,38 +191,8 @@ class TriangleGrowth {
   std::uint32_t next_ = 0;  // the first cell of the pieces to come
 };
 
-// Gives cells without area to their neighbours, across the longest edges: nothing can be fitted to
-// them, so they would part what their triangles join.
-void dissolve_thin_cells(const Topology& topology, Cells& cells) {
-  std::vector<std::uint8_t> has_area(cells.count, 0);
-  std::vector<std::uint32_t> thin;
-  for (std::uint32_t t = 0; t < topology.triangle_count(); ++t) {
-    if (cells.of_triangle[t] == kNoIndex) continue;
-    if (topology.thin(t)) {
-      thin.push_back(t);
-    } else {
-      has_area[cells.of_triangle[t]] = 1;
-    }
-  }
-  const auto lost = [&](std::uint32_t t) { return !has_area[cells.of_triangle[t]]; };
-  std::erase_if(thin, [&](std::uint32_t t) { return !lost(t); });
-  if (thin.empty()) return;
-  for (bool moved = true; moved;) {
-    moved = false;
-    for (const std::uint32_t t : thin) {
-      double longest = -1;
-      std::uint32_t to = kNoIndex;
-      for (std::uint32_t h = 3 * t; h < 3 * t + 3; ++h) {
-        const std::uint32_t o = topology.opposite[h];
-        if (o == kNoIndex || lost(o / 3) || edge_length(topology, h) <= longest) continue;
-        longest = edge_length(topology, h);
-        to = cells.of_triangle[o / 3];
-      }
-      if (to != kNoIndex) cells.of_triangle[t] = to;
-      moved |= to != kNoIndex;
-    }
-    std::erase_if(thin, [&](std::uint32_t t) { return !lost(t); });
-  }
+// Removes the numbers of cells without triangles.
+void renumber(Cells& cells) {
   std::vector<std::uint32_t> number(cells.count, kNoIndex);
   for (const std::uint32_t k : cells.of_triangle) {
     if (k != kNoIndex) number[k] = 0;
@@ -235,6 +205,54 @@ void dissolve_thin_cells(const Topology& topology, Cells& cells) {
     if (k != kNoIndex) k = number[k];
   }
   cells.count = count;
+}
+
+// Gives cells without area to their neighbours, across the longest edges: nothing can be fitted to
+// them, so they would part what their triangles join. Those beside cells with area go first, then
+// those beside them, and so on.
+void dissolve_thin_cells(const Topology& topology, Cells& cells) {
+  std::vector<std::uint8_t> has_area(cells.count, 0);
+  std::vector<std::uint32_t> wave;
+  for (std::uint32_t t = 0; t < topology.triangle_count(); ++t) {
+    if (cells.of_triangle[t] == kNoIndex) continue;
+    if (topology.thin(t)) {
+      wave.push_back(t);
+    } else {
+      has_area[cells.of_triangle[t]] = 1;
+    }
+  }
+  const auto lost = [&](std::uint32_t t) { return !has_area[cells.of_triangle[t]]; };
+  const auto neighbour_with_area = [&](std::uint32_t t) {
+    double longest = -1;
+    std::uint32_t to = kNoIndex;
+    for (std::uint32_t h = 3 * t; h < 3 * t + 3; ++h) {
+      const std::uint32_t o = topology.opposite[h];
+      if (o == kNoIndex || lost(o / 3) || edge_length(topology, h) <= longest) continue;
+      longest = edge_length(topology, h);
+      to = cells.of_triangle[o / 3];
+    }
+    return to;
+  };
+  std::erase_if(wave, [&](std::uint32_t t) { return !lost(t); });
+  if (wave.empty()) return;
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> joins;  // triangles, and their cells
+  while (!wave.empty()) {
+    joins.clear();
+    for (const std::uint32_t t : wave) {
+      const std::uint32_t to = lost(t) ? neighbour_with_area(t) : kNoIndex;
+      if (to != kNoIndex) joins.emplace_back(t, to);
+    }
+    wave.clear();
+    for (const auto& [t, to] : joins) {
+      if (!lost(t)) continue;
+      cells.of_triangle[t] = to;
+      for (std::uint32_t h = 3 * t; h < 3 * t + 3; ++h) {
+        const std::uint32_t o = topology.opposite[h];
+        if (o != kNoIndex && lost(o / 3)) wave.push_back(o / 3);
+      }
+    }
+  }
+  renumber(cells);
 }
 
 }  // namespace
