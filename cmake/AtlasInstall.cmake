@@ -39,8 +39,12 @@ function(atlas_gather target output)
   target_compile_features(${target} PUBLIC cxx_std_20)
   set_target_properties(${target} PROPERTIES OUTPUT_NAME ${output} LINKER_LANGUAGE CXX
                         VERSION ${PROJECT_VERSION} SOVERSION ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR})
-  install(TARGETS ${target} EXPORT libatlasTargets COMPONENT development
-          LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR} ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
+  if(LIBATLAS_INSTALL)
+    install(TARGETS ${target} EXPORT libatlasTargets COMPONENT development
+            LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR} ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
+  elseif(BUILD_SHARED_LIBS)  # which installed programs of the parent project need
+    install(TARGETS ${target} LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR} NAMELINK_SKIP)
+  endif()
 endfunction()
 
 # A header is public unless its first line starts with "// Internal"; tests/layering holds the public
@@ -70,10 +74,16 @@ function(atlas_install_package)
     set_target_properties(libatlas_view PROPERTIES EXPORT_NAME view)
     add_library(libatlas::view ALIAS libatlas_view)
   endif()
-  foreach(module IN LISTS modules view)
-    atlas_install_headers(${module})
-  endforeach()
+  if(LIBATLAS_INSTALL)
+    foreach(module IN LISTS modules view)
+      atlas_install_headers(${module})
+    endforeach()
+    atlas_install_descriptions("${view}")
+  endif()
+endfunction()
 
+# Installs the package for CMake, the one for pkg-config, and the licences.
+function(atlas_install_descriptions view)
   include(CMakePackageConfigHelpers)
   set(package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/libatlas)
   set(LIBATLAS_HAS_VIEW OFF)

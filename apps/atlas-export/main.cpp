@@ -82,11 +82,10 @@ std::vector<std::filesystem::path> images_there(const Scene& scene, const Export
   const std::filesystem::path& target = options.target;
   if (target.empty()) return {};
   const auto folder = target.has_parent_path() ? target.parent_path() : std::filesystem::path(".");
-  const std::string world = lower_extension(target);
   std::vector<std::filesystem::path> there;
   std::error_code error;
   if (options.keep_scene) {
-    for (std::size_t i = 0; world == ".gltf" && i < scene.textures.size(); ++i) {
+    for (std::size_t i = 0; lower_extension(target) == ".gltf" && i < scene.textures.size(); ++i) {
       std::filesystem::path image = scene_texture_path(scene, i, target);
       if (std::filesystem::exists(image, error)) there.push_back(std::move(image));
     }
@@ -94,28 +93,20 @@ std::vector<std::filesystem::path> images_there(const Scene& scene, const Export
     std::filesystem::directory_iterator at(folder, error);
     for (; !error && at != std::filesystem::directory_iterator(); at.increment(error)) {
       const std::filesystem::path ending = at->path().extension();
-      const bool page = (ending == ".png" && world != ".glb") || (ending == ".exr" && options.exr);
+      const bool page =
+          (ending == ".png" && !embeds_images(target)) || (ending == ".exr" && options.exr);
       if (page && named_as_page(at->path(), target)) there.push_back(at->path());
     }
   }
   return there;
 }
 
-// Returns the file that is written beside the target: the .mtl or the .bin; empty for other
-// formats.
-std::filesystem::path beside(const std::filesystem::path& target) {
-  const std::string extension = lower_extension(target);
-  if (extension == ".obj") return safely_beside(target, ".mtl");
-  if (extension == ".gltf") return std::filesystem::path(target).replace_extension("bin");
-  return {};
-}
-
 Status check_outputs(const app::ExportCommand& command) {
   const std::filesystem::path &target = command.options.target, &report = command.report;
   const auto& light = command.read.illumination_file;
   if (Status s = app::check_output(target, {command.scene, light, report}); !s.ok()) return s;
-  if (Status s = app::check_output(beside(target), {command.scene, light}); !s.ok()) return s;
-  if (Status s = app::check_output(report, {command.scene, light, beside(target)}); !s.ok())
+  if (Status s = app::check_output(file_beside(target), {command.scene, light}); !s.ok()) return s;
+  if (Status s = app::check_output(report, {command.scene, light, file_beside(target)}); !s.ok())
     return s;
   const std::string ending = lower_extension(report);
   const bool image = ending == ".png" || ending == ".exr" || ending == ".jpg";
@@ -136,7 +127,7 @@ Status check_files_stay(const LoadedScene& loaded, const app::ExportCommand& com
   std::vector<std::filesystem::path> known = loaded.files;
   for (const Texture& texture : loaded.scene.textures) known.push_back(texture.path);
   for (const std::filesystem::path& file : known)
-    for (const std::filesystem::path& output : {target, beside(target), command.report})
+    for (const std::filesystem::path& output : {target, file_beside(target), command.report})
       if (Status s = app::check_output(output, {file}); !s.ok()) return s;
   known.insert(known.end(), {command.scene, command.read.illumination_file, command.report});
   for (const std::filesystem::path& image : images_there(loaded.scene, command.options))

@@ -12,6 +12,7 @@
 #include <thread>
 
 #include "libatlas/core/clock.h"
+#include "libatlas/core/granted_threads.h"
 
 #ifdef __SANITIZE_THREAD__
 #include <sanitizer/tsan_interface.h>
@@ -87,12 +88,35 @@ class ChunkOnThread {
   double begun_ = 0;
 };
 
-// Returns this thread's arenas by their number of threads. It keeps them for its later loops. An
-// arena for each loop would cost memory and time that TBB does not give back: 12 000 loops took 2.3
-// s instead of 0.01.
-std::map<int, tbb::task_arena>& own_arenas() {
-  thread_local std::map<int, tbb::task_arena> arenas;
+// Threads of TBB for the loops of one thread.
+struct Arena {
+  explicit Arena(int wanted)
+      : size(int(granted_threads(std::size_t(wanted)))), few(size < wanted), threads(size) {}
+  int size;
+  bool few;  // whether the system grants fewer threads than are wanted
+  tbb::task_arena threads;
+};
+
+// Returns this thread's arenas by the number of threads that are wanted. It keeps them for its
+// later loops. An arena for each loop would cost memory and time that TBB does not give back:
+// twelve thousand loops took 2.3 s instead of 0.01.
+std::map<int, Arena>& own_arenas() {
+  thread_local std::map<int, Arena> arenas;
   return arenas;
+}
+
+// Calls `run` in an arena of so many threads.
+template <class Run>
+void run_in_arena(int wanted, const Run& run) {
+  Arena& arena = own_arenas().try_emplace(wanted, wanted).first->second;
+  // A context may ask for more threads than there are cores (tests do so to show that results do
+  // not depend on the number). TBB grants them only with this limit. Nor may it start more threads
+  // for others than the system grants.
+  std::optional<tbb::global_control> limit;
+  if (arena.few || arena.size > tbb::info::default_concurrency()) {
+    limit.emplace(tbb::global_control::max_allowed_parallelism, std::size_t(arena.size));
+  }
+  arena.threads.execute(run);
 }
 
 }  // namespace
@@ -147,15 +171,9 @@ void parallel_for(const Context& context, std::size_t n, std::size_t grain,
   if (in_chunk) {
     tbb::this_task_arena::isolate(run_all);
   } else {
-    // A context may ask for more threads than there are cores (tests do so to show that results do
-    // not depend on the number). TBB grants them only with this limit.
-    std::optional<tbb::global_control> limit;
-    const auto threads = static_cast<int>(thread_count(context));
-    if (threads > tbb::info::default_concurrency()) {
-      limit.emplace(tbb::global_control::max_allowed_parallelism, std::size_t(threads));
-    }
-    const int size = context.threads > 0 ? threads : tbb::task_arena::automatic;
-    own_arenas().try_emplace(size, size).first->second.execute(run_all);
+    run_in_arena(
+        context.threads > 0 ? int(thread_count(context)) : tbb::info::default_concurrency(),
+        run_all);
   }
   lent_seconds += lent;
 }

@@ -146,6 +146,13 @@ std::filesystem::path scene_texture_path(const Scene& scene, std::size_t texture
 // World::viewpoint, which need not be chosen for them.
 bool holds_viewpoint(const std::filesystem::path& path);
 
+// Returns whether a world of this extension holds its images itself: none is written beside it.
+bool embeds_images(const std::filesystem::path& path);
+
+// Returns the file that is written beside the world besides images, .mtl or .bin; empty if there is
+// none.
+std::filesystem::path file_beside(const std::filesystem::path& path);
+
 // The check that all writers begin with.
 Status check_world(const World& world);
 

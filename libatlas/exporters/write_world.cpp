@@ -5,6 +5,7 @@
 #include <string_view>
 
 #include "libatlas/core/file_extension.h"
+#include "libatlas/core/safe_file_name.h"
 #include "libatlas/exporters/world.h"
 
 namespace atlas {
@@ -16,16 +17,30 @@ using Writer = Result<WorldFile> (*)(const World&, const std::filesystem::path&,
 struct Format {
   std::string_view extension;
   Writer write;
-  bool viewpoint;  // holds World::viewpoint
-  bool scene;      // can keep World::scene
+  bool viewpoint;                                                 // holds World::viewpoint
+  bool scene;                                                     // can keep World::scene
+  bool embeds;                                                    // holds the pages itself
+  std::filesystem::path (*beside)(const std::filesystem::path&);  // see file_beside()
 };
 
+std::filesystem::path nothing_beside(const std::filesystem::path&) {
+  return {};
+}
+
+std::filesystem::path materials_beside(const std::filesystem::path& path) {
+  return safely_beside(path, ".mtl");
+}
+
+std::filesystem::path buffer_beside(const std::filesystem::path& path) {
+  return std::filesystem::path(path).replace_extension(".bin");
+}
+
 // A new format is one more line here.
-constexpr std::array<Format, 5> kFormats{{{".wrl", write_vrml, true, false},
-                                          {".wrz", write_vrml, true, false},
-                                          {".obj", write_obj, false, true},
-                                          {".gltf", write_gltf, true, true},
-                                          {".glb", write_gltf, true, true}}};
+constexpr std::array<Format, 5> kFormats{{{".wrl", write_vrml, true, false, false, nothing_beside},
+                                          {".wrz", write_vrml, true, false, false, nothing_beside},
+                                          {".obj", write_obj, false, true, false, materials_beside},
+                                          {".gltf", write_gltf, true, true, false, buffer_beside},
+                                          {".glb", write_gltf, true, true, true, nothing_beside}}};
 
 const Format* format_of(const std::filesystem::path& path) {
   const std::string extension = lower_extension(path);
@@ -55,6 +70,16 @@ bool holds_viewpoint(const std::filesystem::path& path) {
 bool holds_scene(const std::filesystem::path& path) {
   const Format* format = format_of(path);
   return format != nullptr && format->scene;
+}
+
+bool embeds_images(const std::filesystem::path& path) {
+  const Format* format = format_of(path);
+  return format != nullptr && format->embeds;
+}
+
+std::filesystem::path file_beside(const std::filesystem::path& path) {
+  const Format* format = format_of(path);
+  return format != nullptr ? format->beside(path) : std::filesystem::path();
 }
 
 Result<WorldFile> write_world(const World& world, const std::filesystem::path& path,

@@ -7,7 +7,6 @@
 #include <utility>
 #include <vector>
 
-#include "libatlas/core/file_extension.h"
 #include "libatlas/exporters/viewpoint.h"
 #include "libatlas/exporters/world.h"
 #include "libatlas/pipeline/assemble_world.h"
@@ -111,7 +110,7 @@ Result<StageOutcome> write_export(const ExportToWrite& made, AtomicFiles& files,
   if (!world_file.ok()) return world_file.status();
   report.not_kept = world_file->not_kept;
   if (world_file->far_origin) report.advice.push_back(on_far_origin(world));
-  if (lower_extension(made.options.target) == ".glb") {  // embeds its images
+  if (embeds_images(made.options.target)) {
     for (const auto& image : made.image_sources) files.discard(image);
     for (PageReport& page : report.pages) page.image.clear();
   }

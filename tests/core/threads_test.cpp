@@ -1,6 +1,7 @@
 // Loops over threads beyond what parallel_test.cpp and claims_test.cpp hold of them, progress, and
 // clocks.
 #include <gtest/gtest.h>
+#include <pthread.h>
 #include <time.h>
 #include <unistd.h>
 
@@ -19,6 +20,7 @@
 
 #include "libatlas/core/claims.h"
 #include "libatlas/core/clock.h"
+#include "libatlas/core/granted_threads.h"
 #include "libatlas/core/parallel.h"
 #include "libatlas/core/progress.h"
 
@@ -95,6 +97,23 @@ TEST(ParallelFor, KnowsHowManyThreadsAreAskedFor) {
   const std::size_t machine = std::thread::hardware_concurrency();
   EXPECT_EQ(thread_count(on_threads(1'000'000)), std::max<std::size_t>(256, machine));
   for (const int threads : {0, -5}) EXPECT_EQ(thread_count(on_threads(threads)), machine);
+}
+
+// Stacks larger than memory stand for a limit of threads.
+TEST(GrantedThreads, AreThoseThatCanStart) {
+  EXPECT_EQ(granted_threads(1), 1u);
+  EXPECT_EQ(granted_threads(30), 30u);
+  pthread_attr_t before, huge;
+  ASSERT_EQ(pthread_getattr_default_np(&before), 0);
+  ASSERT_EQ(pthread_attr_init(&huge), 0);
+  ASSERT_EQ(pthread_attr_setstacksize(&huge, std::size_t{1} << 46), 0);
+  ASSERT_EQ(pthread_setattr_default_np(&huge), 0);
+  const std::size_t proved = granted_threads(30), more = granted_threads(5000);
+  ASSERT_EQ(pthread_setattr_default_np(&before), 0);
+  EXPECT_EQ(proved, 30u);
+  EXPECT_GE(more, 30u);
+  EXPECT_LT(more, 1000u);
+  EXPECT_EQ(granted_threads(more + 1), more + 1);  // the limit is gone
 }
 
 // Task 1 runs while task 0 throws, and task 2 waits for task 1.

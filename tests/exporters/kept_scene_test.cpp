@@ -340,6 +340,11 @@ TEST(KeptScene, WhatDoesNotAgreeIsRefusedAndNothingWritten) {
   EXPECT_NE(vrml.message().find("write .gltf, .glb or .obj"), std::string::npos);
   EXPECT_EQ(folder.count(), 0u);
   EXPECT_FALSE(holds_scene("w.wrz"));
+  EXPECT_TRUE(embeds_images("W.GLB"));
+  EXPECT_FALSE(embeds_images("w.gltf") || embeds_images("w.obj") || embeds_images("w.png"));
+  EXPECT_EQ(file_beside("a/w.gltf"), "a/w.bin");
+  EXPECT_EQ(file_beside("a/w.OBJ"), "a/w.mtl");
+  EXPECT_EQ(file_beside("w.glb"), "");
   EXPECT_TRUE(holds_scene("W.GLB") && holds_scene("w.gltf") && holds_scene("w.obj"));
 }
 

@@ -131,6 +131,35 @@ endforeach()
 run(${CMAKE_COMMAND} -G ${GENERATOR} -S ${BUILD}/tests/package/parent -B ${BUILD}/tests/package/parent/build
     -DCMAKE_CXX_COMPILER=${CXX} -DCMAKE_CXX_FLAGS=${FLAGS} ${disabled})
 
+# A project that hides symbols, joins sources and gathers libraries in one folder, and that makes a package
+# itself, which therefore cannot be part of an installation.
+set(strict ${BUILD}/tests/package/strict_parent)
+file(REMOVE_RECURSE ${strict})
+file(WRITE ${strict}/CMakeLists.txt "
+cmake_minimum_required(VERSION 3.22)
+project(strict_parent LANGUAGES CXX)
+set(CMAKE_CXX_VISIBILITY_PRESET hidden)
+set(CMAKE_VISIBILITY_INLINES_HIDDEN ON)
+set(CMAKE_UNITY_BUILD ON)
+set(CMAKE_LIBRARY_OUTPUT_DIRECTORY \${CMAKE_BINARY_DIR}/gathered)
+add_library(my_zlib INTERFACE)
+add_library(ZLIB::ZLIB ALIAS my_zlib)
+add_subdirectory(${SOURCE} libatlas)
+")
+run(${CMAKE_COMMAND} -G ${GENERATOR} -S ${strict} -B ${strict}/build
+    -DCMAKE_CXX_COMPILER=${CXX} -DCMAKE_CXX_FLAGS=${FLAGS} ${disabled})
+file(READ ${strict}/build/compile_commands.json commands)
+if(commands MATCHES "hidden|unity_" OR NOT commands MATCHES "LIBATLAS_BUILT_IN=[^ ]*gathered")
+  message(FATAL_ERROR "a parent's settings reach libatlas: see ${strict}/build/compile_commands.json")
+endif()
+file(GLOB_RECURSE rules ${strict}/build/libatlas/*cmake_install.cmake)
+foreach(file IN LISTS rules)
+  file(READ ${file} text)
+  if(text MATCHES "include/libatlas|libatlasConfig|libatlas\\.pc")
+    message(FATAL_ERROR "a parent's installation holds the package: ${file}")
+  endif()
+endforeach()
+
 # Programs get the library's folder as a run path, but not where the system looks anyway or CMake is to
 # set none.
 foreach(wanted "" "set(CMAKE_SKIP_RPATH ON)" "list(APPEND CMAKE_CXX_IMPLICIT_LINK_DIRECTORIES \${folder})")

@@ -128,23 +128,47 @@ TEST_F(System, ReportToAPipe) {
 }
 
 #if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
+// Runs a command of the shell after it has limited itself to so many KiB of addresses.
+RunResult run_limited(int kib, const std::string& command) {
+  RunResult r;
+  FILE* pipe = ::popen(fmt::format("ulimit -v {}; {} 2>&1", kib, command).c_str(), "r");
+  char buffer[4096];
+  while (const std::size_t n = std::fread(buffer, 1, sizeof buffer, pipe))
+    r.output.append(buffer, n);
+  const int status = ::pclose(pipe);
+  r.exit_code = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+  return r;
+}
+
 TEST_F(System, MemoryThatIsNotThere) {
   std::string obj;
   for (int i = 0; i < 60'000; ++i)
     obj += fmt::format("v {0} 0 0 1 1 1\nv {0} 1 0 1 1 1\nv {0} 1 1 1 1 1\nf -1 -2 -3\n", i);
   const fs::path scene = folder_.write("many.obj", obj);
-  RunResult r;
-  FILE* pipe = ::popen(fmt::format("ulimit -v 80000; {} {} -o {} -q --threads 1 2>&1", ATLAS_EXPORT,
-                                   scene.string(), to("w.glb"))
-                           .c_str(),
-                       "r");
-  char buffer[4096];
-  while (const std::size_t n = std::fread(buffer, 1, sizeof buffer, pipe))
-    r.output.append(buffer, n);
-  const int status = ::pclose(pipe);
-  EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 1) << status << r.output;
+  const RunResult r = run_limited(
+      80000, fmt::format("{} {} -o {} -q --threads 1", ATLAS_EXPORT, scene.string(), to("w.glb")));
+  EXPECT_EQ(r.exit_code, 1) << r.output;
   EXPECT_NE(r.output.find("out of memory"), std::string::npos) << r.output;
   EXPECT_EQ(folder_.count(), 2u);
+}
+
+// What so many threads reserve does not fit. oneTBB would end the program.
+TEST_F(System, ThreadsThatCannotStart) {
+  std::string obj;
+  for (int i = 0; i < 14'400; ++i)
+    obj += fmt::format("v {0} {1} 0\nv {2} {1} 0\nv {0} {3} 0\nf -1 -2 -3\n", i / 120, i % 120,
+                       i / 120 + 1, i % 120 + 1);
+  const fs::path scene = folder_.write("many.obj", obj);
+  std::string first;
+  for (const int threads : {1, 64, 250}) {
+    const RunResult r =
+        run_limited(600000, fmt::format("{} {} -o {} -q --charts-only --threads {}", ATLAS_EXPORT,
+                                        scene.string(), to("w.obj"), threads));
+    EXPECT_EQ(r.exit_code, 0) << r.output;
+    const std::string made = TempFolder::read(folder_ / "w.obj");
+    if (first.empty()) first = made;
+    EXPECT_EQ(made, first);
+  }
 }
 #endif
 

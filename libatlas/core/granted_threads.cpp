@@ -1,0 +1,61 @@
+#include "libatlas/core/granted_threads.h"
+
+#include <sys/resource.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstdint>
+#include <fstream>
+#include <future>
+#include <mutex>
+#include <new>
+#include <system_error>
+#include <thread>
+#include <vector>
+
+namespace atlas {
+namespace {
+
+// Returns how many threads may start by the limit of the process's addresses. A thread takes some
+// of them for its stack, and the C library reserves 64 MiB for its allocations. Half of the
+// addresses remain for the work.
+std::size_t addressable(std::size_t count) {
+  rlimit limit{};
+  if (::getrlimit(RLIMIT_AS, &limit) != 0 || limit.rlim_cur == RLIM_INFINITY) return count;
+  std::uint64_t pages = 0;
+  std::ifstream("/proc/self/statm") >> pages;
+  const std::uint64_t used = pages * std::uint64_t(::sysconf(_SC_PAGESIZE));
+  const std::uint64_t room = limit.rlim_cur > used ? limit.rlim_cur - used : 0;
+  constexpr std::uint64_t kThread = std::uint64_t{72} << 20;
+  return std::size_t(std::min<std::uint64_t>(count, room / 2 / kThread));
+}
+
+// Returns how many of `count` threads may start. It starts them to find out, and they end together.
+std::size_t startable(std::size_t count) {
+  std::vector<std::thread> threads;
+  threads.reserve(count);
+  std::promise<void> all_started;
+  const std::shared_future<void> end = all_started.get_future().share();
+  try {
+    while (threads.size() < count) threads.emplace_back([end] { end.wait(); });
+  } catch (const std::system_error&) {
+  } catch (const std::bad_alloc&) {
+  }
+  all_started.set_value();
+  for (std::thread& thread : threads) thread.join();
+  // Where not all can start, some remain for others.
+  return threads.size() < count ? threads.size() / 2 : count;
+}
+
+}  // namespace
+
+std::size_t granted_threads(std::size_t wanted) {
+  static std::mutex one_at_a_time;
+  static std::size_t most = 1;
+  const std::lock_guard lock(one_at_a_time);
+  if (wanted <= most) return wanted;
+  most = std::max(most, 1 + startable(addressable(wanted - 1)));
+  return std::min(most, wanted);
+}
+
+}  // namespace atlas

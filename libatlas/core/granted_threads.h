@@ -1,0 +1,14 @@
+// Internal: how many threads the system lets a process have.
+#pragma once
+
+#include <cstddef>
+
+namespace atlas {
+
+// Returns how many of `wanted` threads (>= 1, the caller's included) the system lets run at once.
+// Limits of processes (ulimit -u, containers) and of address space (ulimit -v) may leave fewer,
+// which oneTBB does not expect: where it fails to start a thread from one of its own, it ends the
+// program. Threads are started to find out, but only for a number larger than any before.
+std::size_t granted_threads(std::size_t wanted);
+
+}  // namespace atlas
