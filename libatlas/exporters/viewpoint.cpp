@@ -24,9 +24,16 @@ constexpr double kEnclosed = 0.68, kTightlyEnclosed = 0.85;  // the latter where
 // grid.
 constexpr double kBackFace = 0.7;
 constexpr double kRoomy = 0.1;  // least mean free horizontal distance, per floor diagonal
+// In a building of many rooms none is that roomy. It is told from a part with a bore in it by the
+// share of the places where people can stand that are tightly enclosed.
+constexpr double kManyRooms = 0.5;
+// A cell whose triangles face both ways has a front on either side. Their normals cancel, up to
+// this share of their area.
+constexpr double kBothWays = 0.1;
 
 // The scene as voxels, in a frame whose third axis points up. Each cell holds the sum of the
-// area-weighted normals of the triangles in it, which tells the front of a wall from its back.
+// area-weighted normals of the triangles in it, which tells the front of a wall from its back, and
+// the sum of these areas.
 class Grid {
  public:
   Grid(std::span<const Vec3f> positions, std::span<const std::uint32_t> indices,
@@ -39,6 +46,7 @@ class Grid {
     for (int a = 0; a < 3; ++a) n_[a] = std::max(1, int(std::ceil(size[a] / cell_)));
     normals_.assign(std::size_t(n_[0]) * n_[1] * n_[2], glm::vec3(0));
     filled_.assign(normals_.size(), 0);
+    areas_.assign(normals_.size(), 0);
     for (std::size_t t = 0; t + 2 < indices.size() && !(t % 65536 == 0 && context.cancelled());
          t += 3) {
       mark(to_frame(to_dvec(positions[indices[t]])), to_frame(to_dvec(positions[indices[t + 1]])),
@@ -82,7 +90,8 @@ class Grid {
       }
       const std::size_t i = index(c[0], c[1], c[2]);
       if (!filled_[i]) continue;
-      ray.hit = glm::dot(glm::dvec3(normals_[i]), direction) <= 0 ? Hit::front : Hit::back;
+      const double towards = glm::dot(glm::dvec3(normals_[i]), direction);
+      ray.hit = towards <= kBothWays * double(areas_[i]) ? Hit::front : Hit::back;
       return ray;
     }
   }
@@ -97,6 +106,7 @@ class Grid {
     const int steps = std::clamp(int(std::ceil(longest / (0.7 * cell_))), 1, 2048);
     const int samples = (steps + 1) * (steps + 2) / 2;
     const glm::vec3 share = glm::vec3(normal / (cell_ * cell_) / double(samples));
+    const float area = glm::length(share);
     for (int i = 0; i <= steps; ++i) {
       for (int j = 0; i + j <= steps; ++j) {
         const glm::dvec3 p = a + (b - a) * (double(i) / steps) + (c - a) * (double(j) / steps);
@@ -107,6 +117,7 @@ class Grid {
         const std::size_t at = index(k[0], k[1], k[2]);
         filled_[at] = 1;
         normals_[at] += share;
+        areas_[at] += area;
       }
     }
   }
@@ -116,6 +127,7 @@ class Grid {
   double cell_ = 1;
   std::array<int, 3> n_{};
   std::vector<glm::vec3> normals_;
+  std::vector<float> areas_;
   std::vector<std::uint8_t> filled_;
 };
 
@@ -179,6 +191,8 @@ std::vector<glm::dvec3> sphere(int count) {
 
 struct Judged {
   double score = 0;  // 0: unusable
+  bool roomy = false;
+  bool closed = false;  // people can stand there, tightly enclosed
   glm::dvec3 direction{1, 0, 0};
 };
 
@@ -195,6 +209,7 @@ Judged judge(const Grid& grid, const Eye& candidate, const std::vector<glm::dvec
     enclosed = double(around.size() - ++open) / double(around.size());
     if (enclosed < (candidate.tall ? kEnclosed : kTightlyEnclosed)) return result;
   }
+  result.closed = candidate.tall && enclosed >= kTightlyEnclosed;
   std::array<double, kHeadings> free{};
   double nearest = INFINITY, mean = 0;
   for (int i = 0; i < kHeadings; ++i) {
@@ -205,7 +220,8 @@ Judged judge(const Grid& grid, const Eye& candidate, const std::vector<glm::dvec
     mean += ray.distance / kHeadings;
   }
   // A pocket between parts of an object is not a room.
-  if (nearest < 1.5 * grid.cell() || mean < kRoomy * grid.level_diagonal()) return result;
+  result.roomy = mean >= kRoomy * grid.level_diagonal();
+  if (nearest < 1.5 * grid.cell() || !(result.roomy || result.closed)) return result;
   double best = -1;
   for (int i = 0; i < kHeadings; ++i) {
     // The shorter of the two neighbouring directions counts for both, so that the view leads down
@@ -226,19 +242,24 @@ struct Best : Judged {
   glm::dvec3 eye{0};
 };
 
-// Returns the best of at most kMaxCandidates positions, which are spread over all of them.
+// Returns the best of at most kMaxCandidates positions, which are spread over all of them. If none
+// is roomy, that is the best small room of a building that consists of such rooms.
 Best best_of(const Grid& grid, const std::vector<Eye>& eyes, const Context& context) {
   const std::vector<glm::dvec3> around = sphere(48);
-  Best best;
+  Best roomy, small;
   const std::size_t tried = std::min(eyes.size(), kMaxCandidates);
+  std::size_t closed = 0;
   for (std::size_t i = 0; i < tried && !context.cancelled(); ++i) {
     const Eye& eye = eyes[i * eyes.size() / tried];
     const Judged judged = judge(grid, eye, around);
+    closed += judged.closed;
+    Best& best = judged.roomy ? roomy : small;
     if (judged.score <= best.score) continue;
     static_cast<Judged&>(best) = judged;
     best.eye = eye.position;
   }
-  return best;
+  if (roomy.score > 0) return roomy;
+  return double(closed) >= kManyRooms * double(tried) ? small : Best{};
 }
 
 Viewpoint from_outside(const Grid& grid) {

@@ -28,6 +28,16 @@ bool group_areas(std::span<const std::uint64_t> areas, std::uint32_t pages, cons
   return true;
 }
 
+GroupingResult in_texels(GroupingResult grouping, std::int32_t cell) {
+  const auto texels = static_cast<std::uint64_t>(std::int64_t{cell} * cell);
+  for (std::uint64_t* area :
+       {&grouping.capacity, &grouping.largest_group, &grouping.lower_bound, &grouping.upper_bound})
+    *area *= texels;
+  for (std::uint64_t& size : grouping.group_size) size *= texels;
+  for (GroupingStep& step : grouping.trace) step.capacity *= texels;
+  return grouping;
+}
+
 double scale_tolerance(const FitOptions& options, double exact, std::size_t items) {
   return options.free_aspect && items >= kManyItems ? 0.02 : exact;
 }

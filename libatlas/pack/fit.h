@@ -103,8 +103,10 @@ struct FitResult {
   // The area of small holes and narrow bays in shapes in which no shape could lie, in square texels
   // at scale 1. Set for outlines only.
   double lost_area = 0;
-  GroupingResult grouping = {};  // the grouping of the box areas at the final scale
-  std::uint32_t packings = 0;    // number of full packings tried
+  // The grouping at the final scale of the boxes' areas, or of the outlines', with their gutters,
+  // in texels.
+  GroupingResult grouping = {};
+  std::uint32_t packings = 0;  // number of full packings tried
   // Number of layouts of outlines on one page that were tried in total.
   std::uint64_t layouts = 0;
 };

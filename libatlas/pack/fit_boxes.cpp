@@ -80,7 +80,7 @@ void finish(const BoxFit& fit, const FitOptions& options, BoxLayout& layout, Fit
   }
   drop_empty_pages(result);
   result.utilization = share_of_pages(content, result);
-  result.grouping = std::move(layout.grouping);
+  result.grouping = in_texels(std::move(layout.grouping), a);
 }
 
 }  // namespace

@@ -178,7 +178,7 @@ void write_result(const OutlineFit& fit, const FitOptions& options, OutlineLayou
   }
   drop_empty_pages(result);
   result.utilization = share_of_pages(shapes, result);
-  result.grouping = std::move(best.grouping);
+  result.grouping = in_texels(std::move(best.grouping), cell);
 }
 
 // With more directions each chart finds a lower place, but the common scale does not always become

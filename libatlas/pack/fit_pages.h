@@ -42,6 +42,9 @@ std::optional<FitResult> press_pages(FitResult& fitted, const FitCharts& charts,
 bool group_areas(std::span<const std::uint64_t> areas, std::uint32_t pages, const Context& context,
                  GroupingResult& grouping);
 
+// Returns the grouping of areas that count cells of `cell` x `cell` texels, in texels.
+GroupingResult in_texels(GroupingResult grouping, std::int32_t cell);
+
 // This many items fill the gaps of a page in any order.
 inline constexpr std::size_t kManyItems = 1000;
 

@@ -169,8 +169,8 @@ class StepList {
     const double texel = plan_.texel_metres;
     const bool raised = plan_.estimated_texels > 1.001 * plan_.surface_area_m2 / (texel * texel);
     add("grouping", group,
-        group ? fmt::format("about {:.1f} M texels of {:.2g} mm{} before downsizing into {}; no "
-                            "bisection if the pages' own area already gives as few groups",
+        group ? fmt::format("about {:.1f} M texels of {:.2g} mm{} before downsizing into {}; "
+                            "fewer pages if these hold all charts at full size",
                             plan_.estimated_texels / 1e6, 1e3 * texel,
                             raised ? ", finer where diffuse textures are," : "", budget)
               : "one page");

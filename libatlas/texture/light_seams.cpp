@@ -35,11 +35,12 @@ struct Bank {
   glm::dvec3 normal;  // of its triangle, unit length; 0 without area
 };
 
-// A half-edge that no other triangle of its edge continues smoothly.
+// A half-edge at which its face may end: no other triangle of its edge continues it smoothly, or
+// one does so beyond something that stands on the edge.
 struct Crease {
-  std::uint32_t half_edge, other;  // another half-edge of the same edge
+  std::uint32_t half_edge, other;  // of the same edge: the one that continues it, else any
   double length;
-  bool jumps;  // the light is another on all other triangles of the edge
+  bool jumps;  // the light is another on the triangle that continues it, else on all others
 };
 
 double difference(const Vec3f& a, const Vec3f& b) {
@@ -116,18 +117,42 @@ class LightSeamFinder {
 
   // Appends side first + k to the creases, or joins it to the face that continues it.
   void judge(std::size_t first, std::size_t k, std::span<const Bank> banks) {
-    bool jumps = true;
     const std::uint32_t h = sides_[first + k].half_edge;
-    for (std::size_t i = 0; i < banks.size(); ++i) {
-      if (i == k) continue;
-      if (smooth(banks[i], banks[k])) {
-        faces_.join(scene_.indices[h], scene_.indices[sides_[first + i].half_edge]);
-        return;
-      }
-      jumps = jumps && jump(banks[i], banks[k]) > options_.visible_jump;
-    }
     const double length = glm::length(position(next_half_edge(h)) - position(h));
+    const std::size_t next = continuation(k, banks);
+    if (next != k) {
+      const std::uint32_t other = sides_[first + next].half_edge;
+      if (parted(k, banks))
+        creases_.push_back({h, other, length, jump(banks[next], banks[k]) > options_.visible_jump});
+      else
+        faces_.join(scene_.indices[h], scene_.indices[other]);
+      return;
+    }
+    bool jumps = true;
+    for (std::size_t i = 0; i < banks.size(); ++i)
+      jumps = jumps && (i == k || jump(banks[i], banks[k]) > options_.visible_jump);
     creases_.push_back({h, sides_[first + (k == 0)].half_edge, length, jumps});
+  }
+
+  // Returns the bank that continues bank k smoothly, if possible with its orientation; k if there
+  // is none.
+  std::size_t continuation(std::size_t k, std::span<const Bank> banks) const {
+    std::size_t found = k;
+    for (std::size_t i = 0; i < banks.size(); ++i) {
+      if (i == k || !smooth(banks[i], banks[k])) continue;
+      if (banks[i].upward != banks[k].upward) return i;
+      if (found == k) found = i;
+    }
+    return found;
+  }
+
+  // Returns whether something stands on the surface at the edge, such as the partition between two
+  // rooms. Layers of a thin sheet do not.
+  bool parted(std::size_t k, std::span<const Bank> banks) const {
+    return std::any_of(banks.begin(), banks.end(), [&](const Bank& bank) {
+      return bank.normal != glm::dvec3(0) &&
+             std::abs(glm::dot(bank.normal, banks[k].normal)) <= least_cosine_;
+    });
   }
 
   Bank bank(const Side& side) const {

@@ -16,8 +16,9 @@ struct LightSeamOptions {
   // Display values (0..1) that differ by more on the two sides of an edge, on average over its
   // ends, are a visible jump.
   double visible_jump = 0.05;
-  // Only edges sharper than this become seams, degrees. On smooth surfaces, light that is constant
-  // per triangle jumps at every edge.
+  // Only edges sharper than this become seams, degrees, and those of smooth surfaces on which
+  // something stands at an angle above this. On smooth surfaces, light that is constant per
+  // triangle jumps at every edge.
   double crease_degrees = 20;
   // The length of a texel, scene units. Faces thinner than kThinTexels of them are not cut off:
   // gutters would take more texels than they save.

@@ -94,6 +94,35 @@ TEST(ViewpointChoice, SeesAllOfAnObject) {
   }
 }
 
+// Every room is small beside the building, and a partition faces both ways.
+TEST(ViewpointChoice, StandsInARoomOfABuildingOfManyRooms) {
+  for (const float half_partition : {0.0f, 0.0005f, 0.05f}) {
+    Triangles office;
+    for (int i = 0; i < 10; ++i)
+      for (int j = 0; j < 6; ++j)
+        add_box(office, {4.0f * i + half_partition, 5.0f * j + half_partition, 0},
+                {4.0f * i + 4 - half_partition, 5.0f * j + 5 - half_partition, 2.8f}, true);
+    ViewpointOptions options;
+    options.up = Up::z;
+    const Viewpoint view = choose_viewpoint(office.positions, office.indices, options, {});
+    EXPECT_TRUE(view.inside) << half_partition;
+    EXPECT_NEAR(view.position.z, 1.6, 0.5);
+    EXPECT_LT(std::abs(std::remainder(view.position.x - 2, 4)), 1.5);
+    EXPECT_LT(std::abs(std::remainder(view.position.y - 2.5, 5)), 2);
+  }
+}
+
+// A large part with a bore that people could walk through.
+TEST(ViewpointChoice, StaysOutOfABoreInAnObject) {
+  Triangles part;
+  add_box(part, {0, 0, 0}, {60, 60, 40}, false);
+  add_box(part, {4, 28, 10}, {56, 32, 14}, true);
+  add_box(part, {60, 20, 0}, {90, 40, 40}, false);
+  ViewpointOptions options;
+  options.up = Up::z;
+  EXPECT_FALSE(choose_viewpoint(part.positions, part.indices, options, {}).inside);
+}
+
 // In a space where nobody can stand, the eye is in the middle third of the height.
 TEST(ViewpointChoice, CrawlsWhereNobodyCanStand) {
   Triangles duct;

@@ -212,6 +212,38 @@ TEST(FitPages, ManyItemsFillSeveralPages) {
   EXPECT_EQ(r.grouping.group.size(), items.size());
 }
 
+// The groups of F(A) = N are told in texels, whatever cells the charts lie on.
+TEST(FitPages, GroupsAreToldInTexels) {
+  const test::ChartItems charts(std::vector<std::vector<Vec2d>>(
+      9, {{0, 0}, {200, 0}, {200, 120}, {0, 0}, {200, 120}, {0, 120}}));
+  FitOptions o = tight(256);
+  o.pages = 3;
+  o.padding = 2;
+  o.alignment = 4;
+  for (const bool outlines : {false, true}) {
+    if (outlines) o.shapes = charts.shapes;
+    const FitResult r = fit(charts.items, o);
+    const GroupingResult& groups = r.grouping;
+    ASSERT_EQ(groups.group_size.size(), 3u);
+    std::uint64_t boxes = 0, sum = 0;
+    for (const FitPlacement& p : r.placements) boxes += std::uint64_t(p.box.area());
+    for (const std::uint64_t size : groups.group_size) sum += size;
+    EXPECT_LE(sum, boxes) << outlines;
+    EXPECT_GE(double(sum), 9 * 200 * 120 * r.scale * r.scale) << outlines;
+    if (!outlines) {
+      EXPECT_EQ(sum, boxes);
+    }
+    EXPECT_EQ(groups.largest_group,
+              *std::max_element(groups.group_size.begin(), groups.group_size.end()));
+    EXPECT_GE(groups.capacity, groups.largest_group);
+    EXPECT_LE(groups.lower_bound, groups.capacity);
+    EXPECT_GE(groups.upper_bound, groups.capacity);
+    EXPECT_TRUE(std::any_of(groups.trace.begin(), groups.trace.end(), [&](const GroupingStep& s) {
+      return s.capacity >= groups.capacity && s.groups <= 3;
+    }));
+  }
+}
+
 TEST(FitPages, FreePagesAreCropped) {
   const test::ChartItems charts({{{0, 0}, {400, 0}, {400, 20}}, {{0, 0}, {400, 20}, {0, 20}}});
   FitOptions o = tight(256);

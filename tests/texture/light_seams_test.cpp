@@ -64,6 +64,49 @@ TEST(LightSeams, OfThreeSheetsAtAnEdgeThoseThatContinueEachOtherStayTogether) {
   for (std::uint32_t h = 0; h < 2 * 8 * 3; ++h) EXPECT_EQ(seams.edges[h], 0) << h;
 }
 
+// The floor of two rooms, of 4 x 4 quads each, and the partition between them, lit on both sides.
+Sheets two_rooms(double here, double there) {
+  return Sheets()
+      .add({0, 0, 0}, {1, 0, 0}, {0, 1, 0}, 4, constant(here))
+      .add({1, 0, 0}, {1, 0, 0}, {0, 1, 0}, 4, constant(there))
+      .add({1, 0, 0}, {0, 0, 1}, {0, 1, 0}, 4, constant(here))
+      .add({1, 0, 0}, {0, 1, 0}, {0, 0, 1}, 4, constant(there));
+}
+
+// Otherwise the light of a bright room shows as a line in the dark one.
+TEST(LightSeams, PartAFloorBelowAPartitionWhereTheLightJumps) {
+  const Sheets sheets = two_rooms(0.8, 0.1);
+  const LightSeams seams = sheets.seams();
+  const Scene& scene = sheets.loaded().scene;
+  ASSERT_EQ(seams.edges.size(), scene.indices.size());
+  EXPECT_NEAR(seams.length, 4, 1e-6);  // with the other three sides of the partition
+  for (std::uint32_t h = 0; h < 2 * 32 * 3; ++h) {
+    const std::uint32_t next = h % 3 == 2 ? h - 2 : h + 1;
+    const Vec3f a = scene.positions[scene.indices[h]], b = scene.positions[scene.indices[next]];
+    EXPECT_EQ(seams.edges[h] != 0, a.x == 1 && b.x == 1) << h;
+  }
+  EXPECT_TRUE(two_rooms(0.8, 0.8).seams().edges.empty());
+}
+
+// Both layers continue at every edge, and nothing stands there.
+TEST(LightSeams, DoNotShatterThinSheets) {
+  Sheets sheet;
+  for (int i = 0; i < 8; ++i) {
+    sheet.add({float(i), 0, 0}, {1, 0, 0}, {0, 4, 0}, 1, constant(i % 2 ? 0.8 : 0.2))
+        .add({float(i), 0, 0}, {0, 4, 0}, {1, 0, 0}, 1, constant(i % 2 ? 0.2 : 0.8));
+  }
+  const LightSeams seams = sheet.seams();
+  EXPECT_NEAR(seams.length, 24, 1e-5);  // the rim
+  const Scene& scene = sheet.loaded().scene;
+  for (std::uint32_t h = 0; h < seams.edges.size(); ++h) {
+    const std::uint32_t next = h % 3 == 2 ? h - 2 : h + 1;
+    const Vec3f a = scene.positions[scene.indices[h]], b = scene.positions[scene.indices[next]];
+    if (a.x == b.x && a.x > 0 && a.x < 8) {
+      EXPECT_EQ(seams.edges[h], 0) << h;
+    }
+  }
+}
+
 // Light that is constant per facet jumps at all edges of a smooth surface.
 TEST(LightSeams, DoNotShatterSmoothSurfaces) {
   Sheets tube;
