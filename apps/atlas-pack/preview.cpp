@@ -57,8 +57,8 @@ int difference(const Rgb& a, const Rgb& b) {
 }
 
 bool neighbours(const PackedItem& a, const PackedItem& b) {
-  constexpr std::int32_t kNear = 16;  // gutters are narrower
-  if (a.at.page != b.at.page) return false;
+  constexpr std::int64_t kNear = 16;  // gutters are narrower; sides may be the largest integer
+  if (!a.at.placed() || a.at.page != b.at.page) return false;
   const Rect p = box_of(a), q = box_of(b);
   return p.x <= q.right() + kNear && q.x <= p.right() + kNear && p.y <= q.top() + kNear &&
          q.y <= p.top() + kNear;

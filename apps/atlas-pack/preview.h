@@ -47,7 +47,10 @@ class PreviewSheet {
   template <class Inside>
   void fill(std::uint32_t page, const Rect& part, const Rgb& rgb, const Inside& inside) {
     const Drawn& to = pages_[page];
-    const auto first = [this](std::int32_t texel) { return (texel + step_ - 1) / step_; };
+    // An item without area may have one side of any length.
+    const auto first = [this](std::int64_t texel) {
+      return static_cast<std::int32_t>((texel + step_ - 1) / step_);
+    };
     for (std::int32_t y = first(part.y); y < std::min(to.height, first(part.top())); ++y)
       for (std::int32_t x = first(part.x); x < std::min(to.width, first(part.right())); ++x)
         if (inside(x * step_, y * step_)) std::copy_n(rgb.data(), 3, image_.at(to.left + x, y));

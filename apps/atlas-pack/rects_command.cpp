@@ -60,12 +60,17 @@ std::vector<std::string> split(const std::string& line) {
 }
 
 // Removes the comment. A '#' begins one at the line's start and after two numbers; inside a name it
-// is a letter.
+// is a letter. After a few of those the search ends, since each takes time in proportion to the
+// line.
 std::string without_comment(const std::string& line) {
-  for (std::size_t i = 0; (i = line.find('#', i)) != std::string::npos; ++i) {
+  constexpr int kMostTried = 64;
+  const std::size_t start = line.find_first_not_of(" \t");
+  if (start != std::string::npos && line[start] == '#') return {};
+  int tried = 0;
+  for (std::size_t i = 0; tried < kMostTried && (i = line.find('#', i)) != line.npos; ++i) {
+    if (line[i - 1] != ' ' && line[i - 1] != '\t') continue;
+    ++tried;
     const std::string before = line.substr(0, i);
-    if (before.find_first_not_of(" \t") == std::string::npos) return {};
-    if (before.back() != ' ' && before.back() != '\t') continue;
     const std::vector<std::string> f = split(before.substr(0, before.find_last_not_of(" \t") + 1));
     std::int32_t side = 0;
     if ((f.size() == 2 || f.size() == 3) && to_side(f.back(), side) &&
@@ -175,10 +180,11 @@ Status read_json(const PackCommand& c, const std::string& text, std::vector<Pack
     return bad_line(c, std::size_t(std::count(text.begin(), end, '\n')) + 1,
                     "not valid JSON (was it cut short?)");
   } catch (const nlohmann::json::exception&) {
-    return bad("holds a number beyond all bounds");
+    return bad("holds a number beyond all bounds (sides are whole numbers up to 2147483647)");
   }
   const nlohmann::json& list = root.is_object() && root.contains("rects") ? root["rects"] : root;
-  if (!list.is_array()) return bad("expected an array of [w, h] or {\"name\", \"w\", \"h\"}");
+  if (!list.is_array())
+    return bad("holds no list (write an array of [w, h] or {\"name\", \"w\", \"h\"})");
   for (std::size_t i = 0; i < list.size(); ++i) {
     const nlohmann::json& e = list[i];
     // Elements are not copied: a copy calls itself for each level, so a million brackets would

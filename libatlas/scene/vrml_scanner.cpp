@@ -10,9 +10,10 @@
 namespace atlas {
 namespace {
 
-// Limit on the text that USE repeats. A few nested USE can stand for more nodes than there are
-// bytes in any memory.
-constexpr std::ptrdiff_t kMostRepeated = std::ptrdiff_t{1} << 29;
+// Limits on the text that USE repeats, of which a file may have the larger. A few nested USE can
+// stand for more nodes than there are bytes in any memory; a scene takes up to fourteen times the
+// bytes of its text.
+constexpr std::ptrdiff_t kMostRepeated = std::ptrdiff_t{1} << 27, kMostRepetitions = 64;
 
 }  // namespace
 
@@ -157,7 +158,8 @@ const char* VrmlScanner::definition_of(std::string_view name, const char* use) {
 
 void VrmlScanner::count_repeated(std::ptrdiff_t bytes) {
   repeated_ += bytes;
-  if (repeated_ > kMostRepeated) fail("USE repeats more nodes than can be read");
+  if (repeated_ > std::max(kMostRepeated, kMostRepetitions * (end_ - begin_)))
+    fail("USE repeats more nodes than can be read");
   if (context_.cancelled()) throw MalformedVrml();
 }
 

@@ -216,6 +216,27 @@ TEST_P(DamagedFiles, AreReadOrRefused) {
   EXPECT_GT(accepted, 20);
 }
 
+TEST_P(DamagedFiles, AreShownByThePlayer) {
+  std::mt19937 random(4);
+  int accepted = 0;
+  for (int round = 0; round < 100; ++round) {
+    const Input bytes = damaged(GetParam().bytes, 4, random);
+    const test::FuzzResult result = test::fuzz_view(bytes, GetParam().extension);
+    ASSERT_EQ(result.fault, "") << "round " << round;
+    accepted += result.accepted;
+  }
+  EXPECT_GT(accepted, 2);
+}
+
+TEST_P(DamagedFiles, AreRepackedOrRefused) {
+  std::mt19937 random(5);
+  for (int round = 0; round < 100; ++round) {
+    const Input bytes = damaged(GetParam().bytes, 2, random);
+    const test::FuzzResult result = test::fuzz_repack(bytes, GetParam().extension);
+    ASSERT_EQ(result.fault, "") << "round " << round;
+  }
+}
+
 TEST_P(DamagedFiles, AreExportedAndReadAgain) {
   std::mt19937 random(2);
   int accepted = 0;
@@ -233,6 +254,59 @@ INSTANTIATE_TEST_SUITE_P(Formats, DamagedFiles,
                                            Seed{"stl", kStl}, Seed{"wrl", kWrl},
                                            Seed{"glb", glb()}),
                          [](const auto& test) { return test.param.extension; });
+
+const std::string kCsv = R"(name,width,height
+# sizes
+a,3,4
+"b ""x""",10,2 # the second
+c #2,0,5
+d,2147483647,1
+)";
+
+const std::string kJson = R"({"rects": [[1, 2], {"name": "a\u00e4", "w": 3, "h": 4},
+{"width": 50, "height": 60}, [2147483647, 0]]})";
+
+const std::string kLight = R"(1 2 3
+# grey
+.5
+
+1e3 0 0
+2
+)";
+
+int accepted_of(const std::string& seed, const auto& target) {
+  std::mt19937 random(6);
+  int accepted = 0;
+  for (int round = 0; round < 500; ++round) {
+    const test::FuzzResult result = target(damaged(seed, 3, random));
+    EXPECT_EQ(result.fault, "") << "round " << round;
+    if (!result.fault.empty()) break;
+    accepted += result.accepted;
+  }
+  return accepted;
+}
+
+TEST(DamagedLists, OfRectanglesArePackedOrRefused) {
+  const auto csv = [](const Input& bytes) { return test::fuzz_rects(bytes, "csv"); };
+  const auto list = [](const Input& bytes) { return test::fuzz_rects(bytes, "json"); };
+  EXPECT_GT(accepted_of(kCsv, csv), 20);
+  EXPECT_GT(accepted_of(kJson, list), 5);
+}
+
+TEST(DamagedLists, OfIlluminationAreReadOrRefused) {
+  const auto light = [](const Input& bytes) { return test::fuzz_illumination(bytes, "txt"); };
+  const auto ply = [](const Input& bytes) { return test::fuzz_illumination(bytes, "ply"); };
+  EXPECT_GT(accepted_of(kLight, light), 20);
+  EXPECT_GT(accepted_of(kPly, ply), 20);
+}
+
+// What fuzzers found in atlas-pack's lists: a number that no double holds.
+TEST(DamagedLists, NumbersBeyondAllBoundsAreRefusedClearly) {
+  const std::string text = "[[3, 2], [2147483648, 41e400]]";
+  const test::FuzzResult result = test::fuzz_rects(Input(text.begin(), text.end()), "json");
+  EXPECT_EQ(result.fault, "");
+  EXPECT_FALSE(result.accepted);
+}
 
 TEST(MadeUpMeshes, AreUnwrapped) {
   std::mt19937 random(3);

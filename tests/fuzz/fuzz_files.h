@@ -36,13 +36,13 @@ class FuzzFolder {
     return write("scene." + extension, all.substr(0, cut));
   }
 
- private:
   std::filesystem::path write(const std::string& name, std::string_view content) const {
     std::ofstream(path_ / name, std::ios::binary)
         .write(content.data(), std::streamsize(content.size()));
     return path_ / name;
   }
 
+ private:
   std::filesystem::path path_;
 };
 

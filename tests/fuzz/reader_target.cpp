@@ -26,4 +26,21 @@ FuzzResult fuzz_reader(FuzzBytes bytes, const std::string& extension) {
   return {loaded->scene.triangle_count() > 0 ? "" : "a scene without a triangle", true};
 }
 
+FuzzResult fuzz_illumination(FuzzBytes bytes, const std::string& extension) {
+  const FuzzFolder folder;
+  ReadOptions options;
+  options.illumination_file = folder.write_scene(bytes, extension);
+  Context context;
+  context.threads = 1;
+  const std::string mesh = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 1 0\nf 1 2 3\nf 2 4 3\n";
+  const Result<LoadedScene> loaded = read_scene(folder.write("mesh.obj", mesh), options, context);
+  if (!loaded.ok()) {
+    const std::string& message = loaded.status().message();
+    const bool named = message.find(options.illumination_file.string()) != message.npos;
+    return {named && clear_error(message) ? "" : "an unclear error: " + message};
+  }
+  const Status sound = check_scene(loaded->scene);
+  return {sound.ok() ? "" : "an unsound scene: " + sound.message(), true};
+}
+
 }  // namespace atlas::test

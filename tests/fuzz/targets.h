@@ -20,6 +20,20 @@ struct FuzzResult {
 // The reader must return a sound scene, or an error of one line that names a file and a remedy.
 FuzzResult fuzz_reader(FuzzBytes bytes, const std::string& extension);
 
+// Reads the bytes as the file of a small mesh's illumination, "txt" or a scene file. Likewise a
+// sound scene or an error.
+FuzzResult fuzz_illumination(FuzzBytes bytes, const std::string& extension);
+
+// Reads them as a scene, and makes of it what atlas-play draws, and its camera.
+FuzzResult fuzz_view(FuzzBytes bytes, const std::string& extension);
+
+// Packs them as a list of rectangles, "csv" or "json", as atlas-pack does, with options that their
+// sum chooses. Items must lie on their pages and apart, and the result must be valid JSON.
+FuzzResult fuzz_rects(FuzzBytes bytes, const std::string& extension);
+
+// Reads them as a scene, and packs its uvs anew as atlas-pack does. All triangles must come back.
+FuzzResult fuzz_repack(FuzzBytes bytes, const std::string& extension);
+
 // Reads them likewise, exports the scene to any format, lit or as plain uvs, and reads the result
 // again. All triangles must come back.
 FuzzResult fuzz_export(FuzzBytes bytes, const std::string& extension);

@@ -151,6 +151,22 @@ TEST(Vrml, UseOfNothingOrWithoutEndIsRefused) {
   EXPECT_LT(cpu_seconds() - begun, 60);
 }
 
+// A thousand triangles, repeated 32 766 times, once took 2 GB from a file of 10 kB.
+TEST(Vrml, SmallFilesCannotFillTheMemoryWithUse) {
+  const TempFolder folder;
+  std::string nodes =
+      "DEF a0 Shape { geometry IndexedFaceSet { coord Coordinate { point [ 0 0 0 1 0 0 0 1 0 ] } "
+      "coordIndex [ ";
+  for (int i = 0; i < 1000; ++i) nodes += "0 1 2 -1 ";
+  nodes += "] } }\n";
+  for (int i = 0; i < 14; ++i)
+    nodes += fmt::format("DEF a{} Group {{ children [ USE a{} USE a{} ] }}\n", i + 1, i, i);
+  const auto loaded = read(folder, nodes);
+  ASSERT_FALSE(loaded.ok());
+  const std::string& message = loaded.status().message();
+  EXPECT_NE(message.find("USE repeats more nodes than can be read"), std::string::npos) << message;
+}
+
 TEST(Vrml, SwitchShowsTheChildThatIsChosen) {
   const TempFolder folder;
   const std::string children = "choice [ NULL DEF a " + shape(1) +

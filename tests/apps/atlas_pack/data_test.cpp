@@ -70,7 +70,8 @@ TEST_F(AtlasPack, JsonListsMayHaveEitherNamesOfSides) {
     EXPECT_TRUE(holds(refused.output, "w.json: element 0 has no whole sides")) << refused.output;
   }
   write("w.json", "{\"sizes\": []}");
-  EXPECT_TRUE(holds(run("rects w.json -o q.csv").output, "w.json: expected an array of"));
+  EXPECT_TRUE(
+      holds(run("rects w.json -o q.csv").output, "w.json: holds no list (write an array of"));
 }
 
 // The page takes b only if it is turned, and c not at all.

@@ -29,6 +29,16 @@ TEST_F(AtlasPack, PreviewsShowTurnedItemsTurned) {
     for (int x = 0; x < 20; ++x) EXPECT_EQ(is_free(*picture, x, y), x >= 10) << x << " " << y;
 }
 
+// Items without area may be of any length, and so may those that are not placed.
+TEST_F(AtlasPack, PreviewsTakeItemsOfTheLargestSides) {
+  write("l.csv", "2147483647,0\n2147483647,1\n2147483647,2147483647\n3,4\n0,2147483647\n");
+  for (const char* preview : {"p.svg", "p.png"}) {
+    const RunResult r = run(fmt::format("rects l.csv -o p.csv --preview {}", preview));
+    EXPECT_NE(read("p.csv").find("\n3,0,"), std::string::npos) << r.output;
+    EXPECT_TRUE(fs::exists(dir_ / preview)) << r.output;
+  }
+}
+
 // Every item of the list is drawn at its own place on its own page; pages are 16 texels apart.
 TEST_F(AtlasPack, PreviewsShowItemsOfLaterPagesAtTheirPlace) {
   write("l.csv", "12,20\n8,20\n12,20\n8,20\n");

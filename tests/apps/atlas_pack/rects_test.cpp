@@ -4,6 +4,7 @@
 #include <sys/stat.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
@@ -16,6 +17,7 @@
 #include "libatlas/image/image_io.h"
 #include "tests/apps/atlas_pack/run_pack.h"
 #include "tests/support/full_disk.h"
+#include "tests/support/slowness.h"
 
 namespace atlas::test {
 namespace {
@@ -41,6 +43,17 @@ TEST_F(AtlasPack, CommentsFollowLinesAndNamesHoldNumberSigns) {
   const RunResult r = run("rects b.txt -o b.csv --json");
   EXPECT_EQ(r.exit_code, 0) << r.output;
   EXPECT_NE(r.output.find("\"width\":10"), std::string::npos) << r.output;
+}
+
+// The search for a comment once took quadratic time: half a minute for this line.
+TEST_F(AtlasPack, LinesOfNumberSignsTakeNoTime) {
+  std::string line = "a";
+  for (int i = 0; i < 100000; ++i) line += " #";
+  write("signs.csv", line + ",3,4\n");
+  const auto start = std::chrono::steady_clock::now();
+  const RunResult r = run("rects signs.csv -o a.json");
+  EXPECT_EQ(r.exit_code, 0) << r.output.substr(0, 400);
+  EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(10) * kSlowness);
 }
 
 // Published instances begin with `width height count`; --page overrides them.
