@@ -183,6 +183,7 @@ class ManyCharts {
         Nest nest;
         plans[p].direction = all.direction;
         plans[p].cancel = context_.cancel;
+        plans[p].all_or_none = true;
         place_pieces(pieces, plans[p], page, nest);
         heights[p] = nest.left_over.empty() ? std::max(1, nest.used_height) : 0;
         for (const std::uint32_t i : plans[p].order) places[i].place = nest.places[i];

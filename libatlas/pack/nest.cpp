@@ -75,7 +75,7 @@ Piece make_piece(const ChartOutline& shape, double factor, const PieceOptions& o
     }
   }
   piece.masks = std::move(masks);
-  complete(piece, options.keep_tests);
+  if (!options.masks_only) complete(piece, options.keep_tests);
   return piece;
 }
 
@@ -108,6 +108,11 @@ std::vector<Piece> make_pieces(std::span<const ChartOutline> shapes, const Piece
     }
   });
   return pieces;
+}
+
+bool searches_skip_rows(std::size_t pieces) {
+  constexpr std::size_t kMany = 500;
+  return pieces >= kMany;
 }
 
 std::int32_t longest_run(std::span<const Piece> pieces) {
@@ -171,7 +176,7 @@ class LastPlaces {
  public:
   explicit LastPlaces(std::size_t pieces) : on_(used(pieces)) {}
 
-  static bool used(std::size_t pieces) { return pieces >= kMany; }
+  static bool used(std::size_t pieces) { return searches_skip_rows(pieces); }
 
   std::int32_t lowest(const Mask& mask) {
     return on_ ? row_[static_cast<std::size_t>(class_of(mask))] : 0;
@@ -185,7 +190,6 @@ class LastPlaces {
   }
 
  private:
-  static constexpr std::size_t kMany = 500;
   static constexpr int kSteps = 64;  // a quarter of an octave each, up to 2^16 cells
 
   static int step(std::int32_t cells) {
@@ -360,6 +364,7 @@ void place_pieces(std::span<const Piece> pieces, const NestPlan& plan, BitPage& 
   for (const std::uint32_t id : plan.order) {
     if (plan.cancel && plan.cancel->load(std::memory_order_relaxed)) break;
     if (placer.find(id) && !placer.put(id)) break;
+    if (plan.all_or_none && !nest.left_over.empty()) break;
   }
   nest.used_height = page.used_height();
 }

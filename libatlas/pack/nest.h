@@ -48,6 +48,8 @@ struct PieceOptions {
   // themselves. If not, place_pieces() makes them anew for each piece that it places. This takes no
   // more time in all if pieces are only placed once.
   bool keep_tests = true;
+  // Whether pieces get masks and origins only, for callers that place none of them.
+  bool masks_only = false;
 };
 
 // Sets what follows from the masks: centers, lifts and by_fraction, and the tests if they are kept.
@@ -67,6 +69,9 @@ struct NestPlan {
   // Placing ends with the first piece that makes the page higher than this. That piece is left
   // over.
   double most_height = std::numeric_limits<double>::infinity();
+  // Whether placing also ends with the first piece that finds no room. If pieces are long and thin,
+  // a search in vain takes as long as hundreds of others.
+  bool all_or_none = false;
   // Once it is raised, place_pieces() places no more. The other pieces are not left over either.
   const std::atomic<bool>* cancel = nullptr;
 };
@@ -102,6 +107,11 @@ struct Nest {
 // the sum of its foot, half its height and half the height of its centre is smallest. Places in
 // nest.places of pieces that the plan does not contain are kept.
 void place_pieces(std::span<const Piece> pieces, const NestPlan& plan, BitPage& page, Nest& nest);
+
+// Returns whether searches for a place begin where one for a piece of similar size has ended, which
+// is the case for many pieces. They may then miss a place that is free. For fewer pieces, a piece
+// that is left over has no room on the page, neither then nor after more pieces were placed.
+bool searches_skip_rows(std::size_t pieces);
 
 // A plan, the places of its pieces on a page that was empty at first, and the work that the search
 // for each place took.

@@ -111,7 +111,8 @@ void OutlineFit::shrink_pages(OutlineLayout& layout) const {
   parallel_for(context_, pages, 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t p = begin; p < end; ++p) {
       const PagePieces& group = groups[p];
-      const NestPlan plan = in_order(group.pieces, context_);
+      NestPlan plan = in_order(group.pieces, context_);
+      plan.all_or_none = true;
       const std::int64_t cells = cells_of(group.pieces);
       for (const Extent& texels : sizes) {
         const Extent size{texels.width / grid_.cell, texels.height / grid_.cell};
@@ -211,7 +212,9 @@ NestSearchOptions OutlineFit::search_of(std::size_t page) const {
 NestSearchResult OutlineFit::fill_group(std::span<const Piece> pieces, std::size_t p) const {
   NestSearchResult filled;
   filled.layouts = 1;
-  const NestPlan plan = in_order(pieces, context_);
+  NestPlan plan = in_order(pieces, context_);
+  // On a single page, charts that are left over have no room elsewhere either.
+  plan.all_or_none = options_.pages == 1 && !searches_skip_rows(pieces.size());
   BitPage page(side_, side_, longest_run(pieces));
   place_pieces(pieces, plan, page, filled.nest);
   if (context_.cancelled()) return filled;
@@ -233,6 +236,7 @@ bool OutlineFit::place_left_over(std::vector<std::uint32_t> left, OutlineLayout&
     return layout.pieces[a].cells() > layout.pieces[b].cells();
   });
   if (left.empty()) return true;
+  if (layout.page_sizes.size() == 1 && !searches_skip_rows(layout.pieces.size())) return false;
   std::vector<std::vector<std::uint32_t>> placed(layout.page_sizes.size());
   std::vector<std::int64_t> room(placed.size(), std::int64_t{side_} * side_);  // in cells
   for (std::uint32_t i = 0; i < layout.pieces.size(); ++i) {
@@ -241,6 +245,7 @@ bool OutlineFit::place_left_over(std::vector<std::uint32_t> left, OutlineLayout&
     room[layout.page[i]] -= layout.pieces[i].cells();
   }
   const std::int32_t longest = longest_run(layout.pieces);
+  bool stuck = false;  // whether a chart has no room on the last page either
   for (std::uint32_t p = 0; p < placed.size() && !left.empty(); ++p) {
     BitPage page(side_, side_, longest);
     for (const std::uint32_t i : placed[p]) {
@@ -249,10 +254,13 @@ bool OutlineFit::place_left_over(std::vector<std::uint32_t> left, OutlineLayout&
     }
     std::erase_if(left, [&](std::uint32_t i) {
       const std::int64_t cells = layout.pieces[i].cells();
-      if (cells > room[p] || context_.cancelled()) return false;
+      if (stuck || cells > room[p] || context_.cancelled()) return false;
       Nest nest;
       place_pieces(std::span(&layout.pieces[i], 1), {{0}, {kFree}}, page, nest);
-      if (!nest.left_over.empty()) return false;
+      if (!nest.left_over.empty()) {
+        stuck = p + 1 == placed.size();
+        return false;
+      }
       layout.page[i] = p;
       layout.places[i] = nest.places[0];
       room[p] -= cells;

@@ -205,7 +205,7 @@ PairPiece make_pair_piece(const ScaledCharts& charts, const ChartPair& pair,
   const std::array factors{charts.factors[pair.first], charts.factors[pair.second]};
   PieceOptions own = options;
   own.factors = factors;
-  own.keep_tests = false;
+  own.masks_only = true;
   // One thread: the caller makes many pairs at once.
   const std::vector<Piece> pieces = make_pieces(outlines, own, Context{.threads = 1});
   PairPiece joined;

@@ -9,6 +9,7 @@
 #include "libatlas/charts/tiles.h"
 #include "libatlas/core/progress.h"
 #include "libatlas/pipeline/layout_effort.h"
+#include "libatlas/pipeline/least_room.h"
 
 namespace atlas {
 namespace {
@@ -202,6 +203,9 @@ class PageFiller {
       const double seams = (way.charts.seam_length - best.charts.seam_length) / root_area;
       const double wanted = goal_.wanted(best.layout, seams);
       if (wanted >= 1) continue;  // more than full pages hold
+      // Charts of 10^6 : 1 come in thousands of pieces, whose gutters leave less than a hundredth
+      // of the page. Laying them out for each way of cutting took 17 s.
+      if (most_covered(way.charts, uvs_.density, options_) < wanted) continue;
       LayoutEffort further = unpressed_;
       further.wanted_fill = wanted;
       further.most_won = most_won;

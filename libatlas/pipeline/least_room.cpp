@@ -39,6 +39,27 @@ double least_texels(const ChartSet& charts, std::span<const double> densities,
   return texels;
 }
 
+double most_covered(const ChartSet& charts, double density, const LayoutOptions& options) {
+  // Within the padding p of a connected chart of area A and length L lie at least A + 2 p L + 4 p²
+  // texels: each row and column that it meets becomes longer by 2 p. At scale s these are
+  // a s² + b s + c in all. The share of a s² in them grows with s.
+  const double room = double(options.pages) * options.page_size * options.page_size;
+  const double p = options.padding;
+  double a = 0, b = 0, c = 0, longest = 0;
+  for (const Chart& chart : charts.charts) {
+    const double side = density * std::max(chart.size.x, chart.size.y);
+    a += density * density * chart.distortion.uv_area;
+    b += 2 * p * side;
+    c += 4 * p * p;
+    longest = std::max(longest, side);
+  }
+  if (!(a > 0) || c >= room) return 0;
+  const double fits = 2 * (room - c) / (b + std::sqrt(b * b + 4 * a * (room - c)));
+  const double alone = std::numbers::sqrt2 * options.page_size / longest;  // along the diagonal
+  const double s = std::min({1.0, fits, alone});
+  return a * s * s / (options.free_aspect ? a * s * s + b * s + c : room);
+}
+
 Status check_least_room(const ChartSet& charts, std::span<const double> densities,
                         const LayoutOptions& options) {
   const double room = double(options.pages) * options.page_size * options.page_size;

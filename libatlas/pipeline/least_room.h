@@ -15,8 +15,13 @@ namespace atlas {
 double least_texels(const ChartSet& charts, std::span<const double> densities,
                     const LayoutOptions& options);
 
-// Returns no_solution if that is more than the pages hold. Sampling textures of charts that cannot
-// fit took most of the time of such an export.
+// Returns a share of the pages that charts of one density do not exceed however they are laid out,
+// because their gutters take the rest. With options.free_aspect, it is a share of the page as it is
+// cropped. minimum_side is not taken into account.
+double most_covered(const ChartSet& charts, double density, const LayoutOptions& options);
+
+// Returns no_solution if least_texels() are more than the pages hold. Sampling textures of charts
+// that cannot fit took most of the time of such an export.
 Status check_least_room(const ChartSet& charts, std::span<const double> densities,
                         const LayoutOptions& options);
 

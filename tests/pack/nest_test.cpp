@@ -41,6 +41,24 @@ void disturb(test::Noise& noise, std::span<const Piece> pieces, NestPlan& plan) 
     plan.direction[i] = noise.in(-1, int(pieces[i].masks.size()) - 1);
 }
 
+// If one piece without room is enough to fail, the others are not tried.
+TEST(Nest, AllOrNoneEndsWithTheFirstPieceWithoutRoom) {
+  test::Noise noise{11};
+  const std::vector<Piece> pieces = blob_pieces(noise, 40, 4);
+  NestPlan plan = plan_by_size(pieces);
+  BitPage page(40, 40, longest_run(pieces)), again(40, 40, longest_run(pieces));
+  Nest all, some;
+  place_pieces(pieces, plan, page, all);
+  ASSERT_GT(all.left_over.size(), 1u);
+  plan.all_or_none = true;
+  place_pieces(pieces, plan, again, some);
+  EXPECT_EQ(some.left_over, std::vector<std::uint32_t>{all.left_over[0]});
+  for (const std::uint32_t i : plan.order) {
+    if (i == all.left_over[0]) break;
+    EXPECT_EQ(some.places[i], all.places[i]);
+  }
+}
+
 // Searches can be compared half-way: one that was interrupted ends as one that was not.
 TEST(NestSearch, InterruptionsChangeNothing) {
   test::Noise noise{7};

@@ -5,8 +5,10 @@
 #include <string_view>
 #include <utility>
 
+#include "libatlas/core/clock.h"
 #include "libatlas/pipeline/unwrap.h"
 #include "tests/support/shapes.h"
+#include "tests/support/slowness.h"
 
 namespace atlas::test {
 namespace {
@@ -54,6 +56,18 @@ TEST(FillPages, ARoadIsCutForAPageOfFreeShape) {
   EXPECT_GT(cut.texels_per_unit, 8 * whole.texels_per_unit);
   EXPECT_LE(cut.charts.charts.size(), 20u);
   EXPECT_EQ(unwrap(grid(60, 6, 10, 1), free).charts.charts.size(), 1u);
+}
+
+// Triangles of needles cannot be cut and keep all charts small. What can be cut of the needles
+// comes in thousands of pieces, whose gutters leave nothing of the page. Laying these out for each
+// way of cutting took 9 s.
+TEST(FillPages, NeedlesAreNotLaidOutInPiecesInVain) {
+  Shape stretched = torus(80, 24);
+  for (auto& p : stretched.positions) p.y *= 1e6;
+  const double begun = cpu_seconds();
+  const UnwrappedMesh needles = unwrap(stretched, {.page_size = 16384});
+  EXPECT_LT(cpu_seconds() - begun, 3 * kSlowness);
+  EXPECT_LT(needles.charts.charts.size(), 100u);
 }
 
 // Several objects often get one density. Their pages are then much smaller than allowed, but no

@@ -65,6 +65,29 @@ TEST(Layout, TheLeastRoomIsNeverMoreThanPackingNeeds) {
   }
 }
 
+// Neither boxes nor outlines cover more than their gutters leave, whatever the shape of the page.
+TEST(Layout, GuttersBoundWhatChartsCover) {
+  for (const Vec2d size : {Vec2d{300, 300}, Vec2d{300, 40}, Vec2d{3000, 2}, Vec2d{1e5, 0.5}})
+    for (const std::size_t count : {1, 7, 40})
+      for (const bool free_aspect : {false, true}) {
+        const ChartSet charts = boxes_of(std::vector<Vec2d>(count, size));
+        const LayoutOptions options{.pages = 1,
+                                    .page_size = 256,
+                                    .alignment = 1,
+                                    .minimum_side = 0,
+                                    .free_aspect = free_aspect};
+        const std::vector<Vec2d> densities(count, {1, 1});
+        const Result<PageLayout> layout = lay_out_pages(charts, densities, options, {});
+        ASSERT_TRUE(layout.ok()) << layout.status().message();
+        const double area = double(count) * size.x * size.y * layout->scale * layout->scale;
+        const double covered = free_aspect ? layout->uv_utilization : area / (256 * 256);
+        const double most = most_covered(charts, 1, options);
+        EXPECT_LE(covered, most) << size.x << " x " << size.y << ", " << count;
+        if (count == 40) EXPECT_LT(most, size.y >= 40 ? 0.9 : 0.1) << size.x << " x " << size.y;
+      }
+  EXPECT_EQ(most_covered(boxes_of({{5, 0}}), 1, {}), 0);
+}
+
 TEST(Layout, TheFillingDensityCoversAllTexels) {
   EXPECT_DOUBLE_EQ(filling_density(boxes_of({{2, 1}, {1, 1}, {1, 1}}), 400), 10);
   EXPECT_EQ(filling_density(boxes_of({{2, 0}}), 400), 1);
