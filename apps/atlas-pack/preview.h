@@ -47,9 +47,9 @@ class PreviewSheet {
   template <class Inside>
   void fill(std::uint32_t page, const Rect& part, const Rgb& rgb, const Inside& inside) {
     const Drawn& to = pages_[page];
-    // An item without area may have one side of any length.
+    // An item without area may have one side of any length, and so begin far below its page.
     const auto first = [this](std::int64_t texel) {
-      return static_cast<std::int32_t>((texel + step_ - 1) / step_);
+      return static_cast<std::int32_t>((std::max<std::int64_t>(texel, 0) + step_ - 1) / step_);
     };
     for (std::int32_t y = first(part.y); y < std::min(to.height, first(part.top())); ++y)
       for (std::int32_t x = first(part.x); x < std::min(to.width, first(part.right())); ++x)

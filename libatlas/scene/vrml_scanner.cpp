@@ -11,7 +11,7 @@ namespace atlas {
 namespace {
 
 // Limits on the text that USE repeats, of which a file may have the larger. A few nested USE can
-// stand for more nodes than there are bytes in any memory; a scene takes up to fourteen times the
+// stand for more nodes than there are bytes in any memory; a scene takes up to eight times the
 // bytes of its text.
 constexpr std::ptrdiff_t kMostRepeated = std::ptrdiff_t{1} << 27, kMostRepetitions = 64;
 

@@ -24,7 +24,8 @@ PackCommand command_of(unsigned choice, const FuzzFolder& folder) {
   if (choice & 32) options.alignment = 4;
   options.crop = choice & 64;
   options.power_of_two = choice & 128;
-  command.preview = choice & 256 ? folder.path() / "preview.svg" : std::filesystem::path();
+  if (choice & 256)
+    command.preview = folder.path() / (choice & 2048 ? "preview.png" : "preview.svg");
   command.threads = 1;
   return command;
 }

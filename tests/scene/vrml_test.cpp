@@ -151,7 +151,7 @@ TEST(Vrml, UseOfNothingOrWithoutEndIsRefused) {
   EXPECT_LT(cpu_seconds() - begun, 60);
 }
 
-// A thousand triangles, repeated 32 766 times, once took 2 GB from a file of 10 kB.
+// A thousand triangles, repeated 32 766 times, once took 2 GB of memory from a file of 10 kB.
 TEST(Vrml, SmallFilesCannotFillTheMemoryWithUse) {
   const TempFolder folder;
   std::string nodes =

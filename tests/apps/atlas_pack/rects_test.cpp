@@ -45,7 +45,7 @@ TEST_F(AtlasPack, CommentsFollowLinesAndNamesHoldNumberSigns) {
   EXPECT_NE(r.output.find("\"width\":10"), std::string::npos) << r.output;
 }
 
-// The search for a comment once took quadratic time: half a minute for this line.
+// The search for a comment once took quadratic time: minutes for this line.
 TEST_F(AtlasPack, LinesOfNumberSignsTakeNoTime) {
   std::string line = "a";
   for (int i = 0; i < 100000; ++i) line += " #";
