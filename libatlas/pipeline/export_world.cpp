@@ -217,6 +217,7 @@ class Export {
     return {};
   }
 
+  // Given charts keep their borders.
   Result<PageLayout> lay_out_lit(const LayoutOptions& options, const Context& context) {
     if (!options_.charts.keep_uv_charts) {
       SizedCharts sized{std::move(charts_), std::move(densities_), std::move(full_densities_)};

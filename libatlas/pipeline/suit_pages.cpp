@@ -165,7 +165,9 @@ Result<std::size_t> cut(const SuitPagesOptions& suit, double longest, SizedChart
 }  // namespace
 
 Result<std::size_t> suit_pages(const SuitPagesOptions& suit, const LayoutOptions& options,
-                               SizedCharts& sized, const Context& context) {
+                               SizedCharts& sized, const Context& caller) {
+  Context context = caller;
+  context.progress = {};  // the layouts below are few and quick beside that of the charts
   const std::vector<FitItem> whole = boxes_of(sized);
   const Problem problem(sized, whole, options);
   if (!problem.large_are_to_blame(whole)) return std::size_t{0};

@@ -21,7 +21,7 @@ MeshView view_of(const Shape& shape) {
 Shape plates(int count) {
   Shape shape = grid(24, 24, 1, 1);
   for (int i = 1; i < count; ++i)
-    shape = together(shape, moved(grid(24, 24, 1, 1), 1, {0, 2 * i, 0}));
+    shape = together(shape, moved(grid(24, 24, 1, 1), 1, {0, 2.0 * i, 0}));
   return shape;
 }
 
@@ -36,7 +36,7 @@ SizedCharts sized_plates(const Shape& shape) {
   return sized;
 }
 
-constexpr LayoutOptions kOnePage{.pages = 1, .page_size = 512};
+const LayoutOptions kOnePage{.pages = 1, .page_size = 512};
 
 double scale_of(const SizedCharts& sized) {
   const auto layout = lay_out_pages(sized.charts, sized.densities, kOnePage, {});
