@@ -21,6 +21,7 @@
 #include "libatlas/pipeline/page_layout.h"
 #include "libatlas/pipeline/part_gaps.h"
 #include "libatlas/pipeline/stage_recorder.h"
+#include "libatlas/pipeline/suit_pages.h"
 #include "libatlas/pipeline/write_export.h"
 #include "libatlas/scene/check_scene.h"
 #include "libatlas/scene/uv_page.h"
@@ -216,6 +217,21 @@ class Export {
     return {};
   }
 
+  // Given charts keep their borders.
+  Result<PageLayout> lay_out_lit(const LayoutOptions& options, const Context& context) {
+    if (!options_.charts.keep_uv_charts) {
+      SizedCharts sized{std::move(charts_), std::move(densities_), std::move(full_densities_)};
+      const Result<std::size_t> cut =
+          suit_pages({view_of(scene_), options_.charts.max_stretch}, options, sized, context);
+      charts_ = std::move(sized.charts);
+      densities_ = std::move(sized.densities);
+      full_densities_ = std::move(sized.full_densities);
+      if (!cut.ok()) return cut.status();
+      report_charts();
+    }
+    return lay_out_pages(charts_, densities_, options, context);
+  }
+
   // Without light, no texel density is required, so pages are filled as well as packing can.
   Result<PageLayout> lay_out_plain(const LayoutOptions& options, const Context& context) {
     const double texels = double(options.pages) * options.page_size * options.page_size;
@@ -238,8 +254,8 @@ class Export {
     const Context& context = record_.begin("packing");
     const std::size_t uncut = charts_.charts.size();
     const LayoutOptions layout = layout_options(charts_, options_, plan_.bake);
-    Result<PageLayout> laid = plan_.bake ? lay_out_pages(charts_, densities_, layout, context)
-                                         : lay_out_plain(layout, context);
+    Result<PageLayout> laid =
+        plan_.bake ? lay_out_lit(layout, context) : lay_out_plain(layout, context);
     if (!laid.ok()) return laid.status();
     layout_ = std::move(*laid);
     if (plan_.bake)

@@ -54,6 +54,20 @@ const StageReport& stage_of(const ExportReport& report, std::string_view name) {
   return report.stages[0];
 }
 
+// Five squares of one size need the room of nine; small pieces of them do not.
+TEST(ExportPages, PlatesThatLeaveThePageHalfEmptyAreCut) {
+  const TempFolder folder;
+  ExportOptions options = full_pages(folder);
+  options.atlases = 1;
+  options.atlas_size = 512;
+  Shape plates;
+  for (int i = 0; i < 5; ++i) plates = together(plates, moved(grid(24, 24), 1, {0, 2.0 * i, 0}));
+  options.texel_metres = 1.0 / 240;  // no plate is longer than half a page
+  const ExportReport report = exported(lit_scene(plates), options);
+  EXPECT_GT(report.charts.size(), 5u);
+  EXPECT_GT(report.uv_utilization, 0.65);
+}
+
 // A grey of a scan, whose file says 128, is a grey of 128 on the page.
 TEST(ExportPages, ColoursAreShownAsTheyAre) {
   for (const float white : {0.0f, 2.0f}) {
