@@ -174,6 +174,8 @@ void add_run_options(CLI::App& app, ExportCommand& command) {
   const OptionGroup group(app, "Running");
   app.add_option("--report", command.report,
                  "Write a JSON report of every stage; with --plan: of the plan");
+  app.add_option("--depfile", command.depfile,
+                 "Also write a rule for make and ninja that lists every file that was read");
   app.add_flag("--plan", command.plan_only, "Print what would run and why, and stop");
   add_off_flag(app, "--no-error", command.options.measure_error, "Do not measure the pages' error");
   app.add_flag("-q,--quiet", command.quiet, "Print errors only");

@@ -10,7 +10,8 @@
 namespace atlas::app {
 
 struct ExportCommand {
-  std::filesystem::path scene, report;  // report: empty if not asked for
+  std::filesystem::path scene;
+  std::filesystem::path report, depfile;  // empty if not asked for
   ReadOptions read;
   ExportOptions options;
   std::optional<double> uv_aspect;  // nothing: what the scene's file says of it

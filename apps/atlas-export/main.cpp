@@ -6,6 +6,7 @@
 
 #include "apps/atlas-export/command_line.h"
 #include "apps/atlas-export/flag_names.h"
+#include "apps/common/depfile.h"
 #include "apps/common/files.h"
 #include "apps/common/program.h"
 #include "apps/common/terminal.h"
@@ -101,6 +102,18 @@ std::vector<std::filesystem::path> images_there(const Scene& scene, const Export
   return there;
 }
 
+Status check_no_image(const char* flag, const std::filesystem::path& output,
+                      const std::filesystem::path& target) {
+  const std::string ending = lower_extension(output);
+  const bool image = ending == ".png" || ending == ".exr" || ending == ".jpg";
+  if (image && !target.empty() &&
+      (named_as_page(output, target) || named_as_page(output, target, "texture")))
+    return {ErrorCode::bad_option,
+            fmt::format("{} {}: is the name of an image of the world (give it another)", flag,
+                        output.string())};
+  return {};
+}
+
 Status check_outputs(const app::ExportCommand& command) {
   const std::filesystem::path &target = command.options.target, &report = command.report;
   const auto& light = command.read.illumination_file;
@@ -108,15 +121,13 @@ Status check_outputs(const app::ExportCommand& command) {
   if (Status s = app::check_output(file_beside(target), {command.scene, light}); !s.ok()) return s;
   if (Status s = app::check_output(report, {command.scene, light, file_beside(target)}); !s.ok())
     return s;
-  const std::string ending = lower_extension(report);
-  const bool image = ending == ".png" || ending == ".exr" || ending == ".jpg";
-  if (image && !target.empty() &&
-      (named_as_page(report, target) || named_as_page(report, target, "texture")))
-    return {
-        ErrorCode::bad_option,
-        fmt::format("--report {}: is the name of an image of the world (give the report another)",
-                    report.string())};
-  return {};
+  const std::filesystem::path& depfile = command.depfile;
+  if (Status s =
+          app::check_output(depfile, {command.scene, light, target, file_beside(target), report});
+      !s.ok())
+    return s;
+  if (Status s = check_no_image("--report", report, target); !s.ok()) return s;
+  return check_no_image("--depfile", depfile, target);
 }
 
 // Refuses outputs that would overwrite files of the scene: its material files, buffers and textures
@@ -127,9 +138,11 @@ Status check_files_stay(const LoadedScene& loaded, const app::ExportCommand& com
   std::vector<std::filesystem::path> known = loaded.files;
   for (const Texture& texture : loaded.scene.textures) known.push_back(texture.path);
   for (const std::filesystem::path& file : known)
-    for (const std::filesystem::path& output : {target, file_beside(target), command.report})
+    for (const std::filesystem::path& output :
+         {target, file_beside(target), command.report, command.depfile})
       if (Status s = app::check_output(output, {file}); !s.ok()) return s;
-  known.insert(known.end(), {command.scene, command.read.illumination_file, command.report});
+  known.insert(known.end(),
+               {command.scene, command.read.illumination_file, command.report, command.depfile});
   for (const std::filesystem::path& image : images_there(loaded.scene, command.options))
     for (const std::filesystem::path& file : known) {
       std::error_code error;
@@ -139,6 +152,18 @@ Status check_files_stay(const LoadedScene& loaded, const app::ExportCommand& com
                             "(give the output another name)",
                             target.string(), file.string())};
     }
+  return {};
+}
+
+// Adds the dependency file, if asked for, to what is written with the world.
+Status add_depfile(const app::ExportCommand& command, const LoadedScene& loaded,
+                   ExportOptions& options) {
+  if (command.depfile.empty()) return {};
+  std::vector<std::filesystem::path> inputs{command.scene, command.read.illumination_file};
+  inputs.insert(inputs.end(), loaded.files.begin(), loaded.files.end());
+  Result<std::string> rule = app::dependency_rule(options.target, inputs);
+  if (!rule.ok()) return rule.status();
+  options.extra_files.push_back({command.depfile, std::move(*rule)});
   return {};
 }
 
@@ -210,6 +235,7 @@ Status run(const app::ExportCommand& command, app::Terminal& terminal) {
   options.charts.uv_aspect =
       command.uv_aspect.value_or(loaded->uv_aspect > 0 ? loaded->uv_aspect : 1);
   if (!command.uv_aspect) options.charts.material_uv_aspects = loaded->material_uv_aspects;
+  if (Status s = add_depfile(command, *loaded, options); !s.ok()) return s;
   Result<ExportReport> report = export_world(
       *loaded, options, [&](const StageReport& stage) { terminal.line(stage_line(stage)); },
       context);

@@ -206,6 +206,8 @@ void add_mesh(CLI::App& app, PackCommand& c) {
             return good ? std::string() : "'" + text + "' must be 1, 2, or a multiple of 4 to 64";
           },
           ""));
+  mesh->add_option("--depfile", c.depfile,
+                   "Also write a rule for make and ninja that lists every file that was read");
   add_page_options(*mesh, c);
   add_effort_options(*mesh, c);
   add_run_options(*mesh, c);

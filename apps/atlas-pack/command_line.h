@@ -22,6 +22,7 @@ struct PackCommand {
   bool trim = true, alias = true;
   int extrude = 0, trim_threshold = 0;
   // mesh
+  std::filesystem::path depfile;
   unsigned pages = 1, rotations = 16;
   int page_side = 2048;
   std::optional<double> uv_aspect;  // nothing: what the mesh's file says of it

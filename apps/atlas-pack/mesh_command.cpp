@@ -12,6 +12,7 @@
 #include "apps/atlas-pack/mesh_obj.h"
 #include "apps/atlas-pack/preview.h"
 #include "apps/atlas-pack/uv_charts.h"
+#include "apps/common/depfile.h"
 #include "apps/common/files.h"
 #include "libatlas/core/atomic_file.h"
 #include "libatlas/core/counted.h"
@@ -232,15 +233,31 @@ void widen_uvs(LoadedScene& loaded) {
   scene.texcoords = std::move(uvs);
 }
 
+Status check_outputs(const PackCommand& c) {
+  const std::filesystem::path materials = material_file(c.output);
+  if (lower_extension(c.output) != ".obj")
+    return {ErrorCode::bad_option,
+            fmt::format("{}: the target must end in .obj", c.output.string())};
+  if (Status s = check_output(c.output, {c.input, c.preview}); !s.ok()) return s;
+  if (Status s = check_output(materials, {c.input, c.preview}); !s.ok()) return s;
+  if (Status s = check_output(c.depfile, {c.input, c.preview, c.output, materials}); !s.ok())
+    return s;
+  return check_preview(c);
+}
+
+// Writes which files the mesh was made from, if that is asked for.
+Status write_depfile(const PackCommand& c, const LoadedScene& loaded, AtomicFiles& files) {
+  if (c.depfile.empty()) return {};
+  std::vector<std::filesystem::path> inputs{c.input};
+  inputs.insert(inputs.end(), loaded.files.begin(), loaded.files.end());
+  const Result<std::string> rule = dependency_rule(c.output, inputs);
+  return rule.ok() ? files.write(c.depfile, *rule) : rule.status();
+}
+
 }  // namespace
 
 Result<PackedAtlas> run_mesh(const PackCommand& c, const Context& context) {
-  if (lower_extension(c.output) != ".obj")
-    return Status(ErrorCode::bad_option,
-                  fmt::format("{}: the target must end in .obj", c.output.string()));
-  if (Status s = check_output(c.output, {c.input, c.preview}); !s.ok()) return s;
-  if (Status s = check_output(material_file(c.output), {c.input, c.preview}); !s.ok()) return s;
-  if (Status s = check_preview(c); !s.ok()) return s;
+  if (Status s = check_outputs(c); !s.ok()) return s;
   ReadOptions read;
   read.load_textures = false;
   read.normals = true;
@@ -250,7 +267,8 @@ Result<PackedAtlas> run_mesh(const PackCommand& c, const Context& context) {
   if (c.uv_aspect) loaded->uv_aspect = *c.uv_aspect, loaded->material_uv_aspects.clear();
   widen_uvs(*loaded);
   for (const auto& file : loaded->files)
-    if (Status s = check_output(material_file(c.output), {file}); !s.ok()) return s;
+    for (const auto& output : {material_file(c.output), c.depfile})
+      if (Status s = check_output(output, {file}); !s.ok()) return s;
   for (const std::string& line : loaded->defects.lines()) context.say("defect: " + line);
   for (const std::string& line : lost_in_obj(scene)) context.say("not kept: " + line);
   if (scene.texcoord_indices.empty())
@@ -284,6 +302,7 @@ Result<PackedAtlas> run_mesh(const PackCommand& c, const Context& context) {
   if (Status s = write_mesh(c.output, mesh, files); !s.ok()) return s;
   if (!c.preview.empty())
     if (Status s = draw(c.preview, mesh, item_colors(atlas), files); !s.ok()) return s;
+  if (Status s = write_depfile(c, *loaded, files); !s.ok()) return s;
   if (Status s = files.commit(); !s.ok()) return s;
   atlas.files = {c.output, material_file(c.output)};
   return atlas;

@@ -75,12 +75,13 @@ Sun cabin_sun() {
   return {glm::normalize(glm::vec3(-0.34f, -1.0f, 0.17f)), glm::vec3(2100, 1640, 1050), 0.008f};
 }
 
-Mesh build_cabin(std::size_t triangles, std::size_t limit) {
+Mesh build_cabin(std::size_t triangles, std::size_t limit, const atlas::Context& context) {
   double fine = 0.01, wide = 0.8;
   const bool coarse = model(wide, false).triangle_count() > limit;
   // The count falls in steps as the edge length rises. Bisects for the finest mesh that has not too
   // many triangles.
   for (int i = 0; i < 10; ++i) {
+    if (context.cancelled()) return {};
     const double middle = std::sqrt(fine * wide);
     (model(middle, coarse).triangle_count() <= triangles ? wide : fine) = middle;
   }

@@ -87,6 +87,6 @@ std::vector<SurfaceMaterial> cabin_materials();
 
 // Returns the whole cabin, welded, with at most `triangles` triangles or with as few as its round
 // shapes need. If those are more than `limit`, small parts stay angular.
-Mesh build_cabin(std::size_t triangles, std::size_t limit);
+Mesh build_cabin(std::size_t triangles, std::size_t limit, const atlas::Context& context = {});
 
 }  // namespace cabin

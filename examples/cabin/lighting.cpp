@@ -247,6 +247,7 @@ void Lighting::light_indirectly(Mesh& mesh, const atlas::Context& context) const
   // The brightest surfaces reflect 0.8, so eight bounces leave less than a fifth of the light
   // unsent.
   for (int bounce = 0; bounce < 8; ++bounce) {
+    if (context.cancelled()) return;
     atlas::parallel_for(context, count, 256, [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i)
         mesh.indirect[i] = gather(mesh, {links.data() + i * rays, rays}, total);

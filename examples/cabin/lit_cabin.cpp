@@ -10,16 +10,17 @@ int default_samples(std::size_t triangles) {
   return triangles <= 200000 ? 192 : triangles <= 1200000 ? 96 : 64;
 }
 
-Mesh coarse_cabin(std::size_t triangles) {
+Mesh coarse_cabin(std::size_t triangles, const atlas::Context& context) {
   // Light between surfaces is gathered on at most this many triangles, whatever the final size. It
   // varies slowly, and its cost would otherwise dominate.
   constexpr std::size_t kCoarse = 90000;
-  return build_cabin(std::min(kCoarse, triangles * 35 / 100), triangles * 8 / 10);
+  return build_cabin(std::min(kCoarse, triangles * 35 / 100), triangles * 8 / 10, context);
 }
 
 void light_cabin(Mesh& mesh, std::size_t triangles, const LightingOptions& options,
                  const atlas::Context& context) {
   const Shell shell = shell_of(mesh);
+  if (context.cancelled()) return;
   const Tracer tracer(shell.positions, shell.triangles);
   const Lighting lighting(tracer, options);
   lighting.light_directly(mesh, 0, context);

@@ -9,8 +9,8 @@ namespace cabin {
 // average out the noise.
 int default_samples(std::size_t triangles);
 
-// Returns the unlit cabin that light_cabin() refines to `triangles`.
-Mesh coarse_cabin(std::size_t triangles);
+// Returns the unlit cabin that light_cabin() refines to `triangles`; if cancelled, an empty mesh.
+Mesh coarse_cabin(std::size_t triangles, const atlas::Context& context = {});
 
 // Lights the mesh and refines it, and reports each completed step to the context. If cancelled, the
 // mesh is incomplete.

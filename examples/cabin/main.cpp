@@ -91,7 +91,8 @@ atlas::Status run(const Arguments& a, atlas::app::Terminal& terminal) {
   const auto say = [&](std::string_view line) {
     terminal.line(fmt::format("{:7.1f} s  {}", atlas::cpu_seconds() - start, line));
   };
-  cabin::Mesh mesh = cabin::coarse_cabin(a.triangles);
+  cabin::Mesh mesh = cabin::coarse_cabin(a.triangles, context);
+  if (context.cancelled()) return atlas::Status::cancelled();
   if (atlas::Status s = check_textures_stay(a, mesh); !s.ok()) return s;
   say(fmt::format("coarse mesh: {} triangles, {} vertices, {} objects", mesh.triangles.size(),
                   mesh.vertices.size(), mesh.objects.size()));
@@ -104,7 +105,7 @@ atlas::Status run(const Arguments& a, atlas::app::Terminal& terminal) {
             fmt::format("{} triangles came out instead of {} (ask for more)", mesh.triangles.size(),
                         a.triangles)};
   if (!a.output.empty()) {
-    const atlas::Status status = cabin::write_scene(a.output, mesh, a.up == "y");
+    const atlas::Status status = cabin::write_scene(a.output, mesh, a.up == "y", context);
     if (!status.ok()) return status;
     say("wrote " + a.output);
   }

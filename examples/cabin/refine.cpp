@@ -191,8 +191,10 @@ class Splitter {
   std::unordered_map<std::uint64_t, Id> vertices_, texcoords_;
 };
 
-void refine_once(Mesh& mesh, std::size_t wished) {
+// If cancelled, the mesh stays as it is.
+void refine_once(Mesh& mesh, std::size_t wished, const atlas::Context& context) {
   Edges all(mesh);
+  if (context.cancelled()) return;
   std::vector<Id> order(all.edges.size());
   std::iota(order.begin(), order.end(), 0);
   std::sort(order.begin(), order.end(), [&](Id a, Id b) {
@@ -204,6 +206,7 @@ void refine_once(Mesh& mesh, std::size_t wished) {
     if (count >= wished) break;
     count += mark(all, edge, stack);
   }
+  if (context.cancelled()) return;
   std::vector<Triangle> triangles;
   triangles.reserve(count);
   Splitter splitter(mesh, all);
@@ -221,7 +224,7 @@ void refine(Mesh& mesh, const RefineOptions& options, const Lighting& lighting,
         start * std::pow(double(options.triangles) / start, double(pass) / options.passes);
     if (context.cancelled() || goal <= double(mesh.triangles.size())) continue;
     const std::size_t first = mesh.vertices.size();
-    refine_once(mesh, std::size_t(std::lround(goal)));
+    refine_once(mesh, std::size_t(std::lround(goal)), context);
     lighting.light_directly(mesh, first, context);
     context.report("refining", double(pass) / options.passes);
   }

@@ -21,7 +21,8 @@ glm::vec3 turned(glm::vec3 p, bool y_up) {
 // the same value.
 class Writer {
  public:
-  explicit Writer(const fs::path& path) : file_(path, std::ios::binary) {
+  Writer(const fs::path& path, const atlas::Context& context)
+      : file_(path, std::ios::binary), context_(context) {
     buffer_.reserve(kFull + 256);
   }
   Writer& text(std::string_view s) {
@@ -40,6 +41,7 @@ class Writer {
   }
   atlas::Status finish(const fs::path& path) {
     flush();
+    if (context_.cancelled()) return atlas::Status::cancelled();
     file_.flush();
     if (file_) return {};
     return {atlas::ErrorCode::io, path.string() + ": could not be written (is the disk full?)"};
@@ -48,10 +50,11 @@ class Writer {
  private:
   static constexpr std::size_t kFull = 1 << 20;
   void flush() {
-    file_.write(buffer_.data(), std::streamsize(buffer_.size()));
+    if (!context_.cancelled()) file_.write(buffer_.data(), std::streamsize(buffer_.size()));
     buffer_.clear();
   }
   std::ofstream file_;
+  const atlas::Context& context_;
   std::string buffer_;
 };
 
@@ -59,10 +62,12 @@ glm::vec3 total_light(const Mesh& mesh, std::size_t v) {
   return mesh.direct[v] + mesh.indirect[v];
 }
 
-atlas::Status write_textures(const fs::path& folder, const Mesh& mesh, atlas::AtomicFiles& files) {
+atlas::Status write_textures(const fs::path& folder, const Mesh& mesh, atlas::AtomicFiles& files,
+                             const atlas::Context& context) {
   std::set<std::string> done;
   for (const SurfaceMaterial& m : mesh.materials) {
     if (m.texture_file.empty() || !done.insert(m.texture_file).second) continue;
+    if (context.cancelled()) return atlas::Status::cancelled();
     const atlas::Status status =
         atlas::write_png(files.path_for(folder / m.texture_file), m.texture, {});
     if (!status.ok()) return status;
@@ -70,8 +75,8 @@ atlas::Status write_textures(const fs::path& folder, const Mesh& mesh, atlas::At
   return {};
 }
 
-atlas::Status write_mtl(const fs::path& path, const Mesh& mesh) {
-  Writer out(path);
+atlas::Status write_mtl(const fs::path& path, const Mesh& mesh, const atlas::Context& context) {
+  Writer out(path, context);
   out.text("# Diffuse reflectance of the cabin's surfaces: Kd linear, map_Kd sRGB-encoded\n");
   for (const SurfaceMaterial& m : mesh.materials) {
     out.text("newmtl ").text(m.name).text("\nKd");
@@ -82,11 +87,12 @@ atlas::Status write_mtl(const fs::path& path, const Mesh& mesh) {
   return out.finish(path);
 }
 
-atlas::Status write_obj(const fs::path& path, const Mesh& mesh, bool y_up) {
+atlas::Status write_obj(const fs::path& path, const Mesh& mesh, bool y_up,
+                        const atlas::Context& context) {
   atlas::AtomicFiles files;
   const fs::path library = fs::path(path).replace_extension(".mtl");
   const fs::path target = files.path_for(path);
-  Writer out(target);
+  Writer out(target, context);
   out.text("# Aircraft cabin in metres, ")
       .text(y_up ? "y" : "z")
       .text(
@@ -112,16 +118,18 @@ atlas::Status write_obj(const fs::path& path, const Mesh& mesh, bool y_up) {
       out.text(" ").number(t.vertex[k] + 1).text("/").number(t.texcoord[k] + 1);
     out.text("\n");
   }
-  for (const atlas::Status& status : {out.finish(path), write_mtl(files.path_for(library), mesh),
-                                      write_textures(path.parent_path(), mesh, files)})
+  for (const atlas::Status& status :
+       {out.finish(path), write_mtl(files.path_for(library), mesh, context),
+        write_textures(path.parent_path(), mesh, files, context)})
     if (!status.ok()) return status;
   return files.commit();
 }
 
-atlas::Status write_ply(const fs::path& path, const Mesh& mesh, bool y_up) {
+atlas::Status write_ply(const fs::path& path, const Mesh& mesh, bool y_up,
+                        const atlas::Context& context) {
   atlas::AtomicFiles files;
   const fs::path target = files.path_for(path);
-  Writer out(target);
+  Writer out(target, context);
   out.text(
       "ply\nformat binary_little_endian 1.0\ncomment aircraft cabin in metres; red, green, blue: "
       "illuminance in lux, linear\nelement vertex ");
@@ -155,14 +163,15 @@ atlas::Status check_scene_path(const fs::path& path) {
   return atlas::check_writable(path);
 }
 
-atlas::Status write_scene(const fs::path& path, const Mesh& mesh, bool y_up) {
+atlas::Status write_scene(const fs::path& path, const Mesh& mesh, bool y_up,
+                          const atlas::Context& context) {
   if (atlas::Status status = check_scene_path(path); !status.ok()) return status;
   const std::string ending = path.extension().string();
-  if (ending == ".obj") return write_obj(path, mesh, y_up);
-  if (ending == ".ply") return write_ply(path, mesh, y_up);
+  if (ending == ".obj") return write_obj(path, mesh, y_up, context);
+  if (ending == ".ply") return write_ply(path, mesh, y_up, context);
   atlas::AtomicFiles files;
   for (const atlas::Status& status : {write_glb(path, files.path_for(path), mesh, y_up),
-                                      write_textures(path.parent_path(), mesh, files)})
+                                      write_textures(path.parent_path(), mesh, files, context)})
     if (!status.ok()) return status;
   return files.commit();
 }

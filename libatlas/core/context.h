@@ -18,7 +18,8 @@ namespace atlas {
 // stage and leaves the call that was given the callback; files are whole or absent then, too.
 struct Context {
   // Number of threads; 0 or less: as many as the machine has. At most 256, or as many as the
-  // machine has, are used. Results never depend on it.
+  // machine has, are used, and fewer where the system does not grant that many (ulimit -u,
+  // containers). Results never depend on it.
   int threads = 0;
   // Called as (stage, fraction in [0, 1]), from any thread, but never from two threads at once by
   // the same library call. The fractions of a stage rise, stages follow each other, and some stages

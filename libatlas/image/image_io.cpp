@@ -173,6 +173,12 @@ bool holds_floats(const fs::path& path) {
 
 }  // namespace
 
+Status check_image_module(const std::string& name) {
+  const Module& files = module();
+  if (files.functions) return {};
+  return {ErrorCode::unsupported, fmt::format("{}: {}", name, files.why_not)};
+}
+
 Result<Image8> read_image8(const fs::path& path) {
   return call(&ImageFiles::read_image8, path.string(), path);
 }

@@ -16,6 +16,10 @@
 
 namespace atlas {
 
+// Loads the module. To be called before long work that ends with images, so that the work is not in
+// vain. `name` is the file that needs it, for the message. Errors: unsupported.
+Status check_image_module(const std::string& name);
+
 // Reads any format that OpenImageIO supports as 8-bit values, with all channels and without colour
 // conversion (an sRGB file stays sRGB-encoded). Colours are not multiplied by alpha: those that a
 // TIFF says are so, and all of OpenEXR files with an alpha as their last channel, are divided by

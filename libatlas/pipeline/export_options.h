@@ -3,6 +3,8 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <string>
+#include <vector>
 
 #include "libatlas/bake/bake.h"
 #include "libatlas/charts/charts.h"
@@ -13,6 +15,12 @@
 #include "libatlas/texture/tone.h"
 
 namespace atlas {
+
+// A file of a caller's own that appears together with the world.
+struct ExtraFile {
+  std::filesystem::path path = {};
+  std::string bytes = {};
+};
 
 struct ExportOptions {
   // The extension chooses the format: .wrl, .wrz, .obj, .gltf, .glb. Images are written beside it.
@@ -78,6 +86,9 @@ struct ExportOptions {
   // With keep_scene, for glTF: the set of the new uvs, TEXCOORD_<uv_set>, 1..7. What it holds is
   // replaced, for instance the uvs of an earlier export. 0: the first set that is free.
   int uv_set = 0;
+  // Files that appear together with the world, or not at all, such as lists of what it was made
+  // from. ExportReport::files does not list them.
+  std::vector<ExtraFile> extra_files = {};
   bool measure_error = true;  // compare the finished pages with the input's light
 };
 

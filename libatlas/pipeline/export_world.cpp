@@ -11,6 +11,7 @@
 #include "libatlas/core/atomic_file.h"
 #include "libatlas/core/clock.h"
 #include "libatlas/core/parallel.h"
+#include "libatlas/image/image_io.h"
 #include "libatlas/pipeline/advice.h"
 #include "libatlas/pipeline/assemble_world.h"
 #include "libatlas/pipeline/bake_pages.h"
@@ -59,6 +60,7 @@ class Export {
     const double cpu = own_cpu_seconds(), wall = wall_seconds();
     if (Status s = check_plan(plan_, options_); !s.ok()) return s;
     if (Status s = plan_.bake ? check_images(scene_) : Status(); !s.ok()) return s;
+    if (Status s = check_module(); !s.ok()) return s;
     if (plan_.bake) {
       if (Status s = expose(); !s.ok()) return s;
     }
@@ -92,6 +94,14 @@ class Export {
   }
 
  private:
+  // Without the module for image files, all stages up to the first page would run in vain.
+  Status check_module() const {
+    const bool kept =
+        options_.keep_scene && std::any_of(scene_.textures.begin(), scene_.textures.end(),
+                                           [](const Texture& t) { return t.encoded.empty(); });
+    return plan_.bake || kept ? check_image_module(options_.target.string()) : Status();
+  }
+
   Status cut_charts() {
     const Context& context = record_.begin("charts");
     MeshView mesh = view_of(scene_);

@@ -272,6 +272,8 @@ Status check_plan(const ExportPlan& plan, const ExportOptions& options) {
             "its own (add "
             "ExportOptions::charts_only to get uvs without light)"};
   }
+  for (const ExtraFile& file : options.extra_files)
+    if (Status s = check_writable(file.path); !s.ok()) return s;
   if (!target.empty()) {
     if (Status s = check_writable(target); !s.ok() || !plan.bake) return s;
     const std::string last_page = page_name(target, options.atlases - 1) + ".png";

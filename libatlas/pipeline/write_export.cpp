@@ -63,9 +63,13 @@ World make_world(const ExportToWrite& made, const WorldMesh& mesh, ExportReport&
   return world;
 }
 
-// Gives all files their names, and adds their sizes to the report and up to `bytes`.
-Status commit_files(AtomicFiles& files, ExportReport& report, std::uint64_t& bytes) {
+// Gives all files their names, those of `extra` too, and adds the sizes of the world's own to the
+// report and up to `bytes`.
+Status commit_files(const std::vector<ExtraFile>& extra, AtomicFiles& files, ExportReport& report,
+                    std::uint64_t& bytes) {
   const std::vector<std::filesystem::path> written = files.targets();
+  for (const ExtraFile& file : extra)
+    if (Status s = files.write(file.path, file.bytes); !s.ok()) return s;
   if (Status s = files.commit(); !s.ok()) return s;
   for (const auto& path : written) {
     std::error_code error;
@@ -116,7 +120,7 @@ Result<StageOutcome> write_export(const ExportToWrite& made, AtomicFiles& files,
   }
   if (context.cancelled()) return Status::cancelled();
   std::uint64_t bytes = 0;
-  if (Status s = commit_files(files, report, bytes); !s.ok()) return s;
+  if (Status s = commit_files(made.options.extra_files, files, report, bytes); !s.ok()) return s;
   return StageOutcome{report.triangles_out, bytes, "bytes", writing_note(made, *world_file)};
 }
 

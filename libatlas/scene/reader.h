@@ -41,7 +41,8 @@ struct ReadOptions {
 struct LoadedScene {
   Scene scene = {};
   DefectReport defects = {};  // what was left out or replaced
-  // Files that were read besides the scene's own: material libraries, buffers.
+  // Files that were read besides the scene's own and the illumination file: material libraries,
+  // buffers, textures, also those that could not be decoded. Missing files are not listed.
   std::vector<std::filesystem::path> files = {};
   // Width / height of the pages that the uvs were made for, if an OBJ, glTF or VRML file says so as
   // libatlas writes it (scene/uv_page.h) and all pages have one shape; else 0.

@@ -205,10 +205,17 @@ bool SceneBuilder::keep_encoded(RawTexture& raw, Scene& scene) const {
   return true;
 }
 
+// Adds the texture to the files that are read, unless it is embedded or missing.
+void SceneBuilder::note_file(const RawTexture& raw) {
+  std::error_code error;
+  if (raw.bytes.empty() && std::filesystem::exists(raw.path, error)) files.push_back(raw.path);
+}
+
 void SceneBuilder::load_textures(Scene& scene, bool encoded) {
   std::vector<std::int32_t> loaded(textures.size(), -1);
   for (std::size_t i = 0; i < textures.size(); ++i) {
     RawTexture& raw = textures[i];
+    note_file(raw);
     if (encoded && keep_encoded(raw, scene)) {
       loaded[i] = static_cast<std::int32_t>(scene.textures.size()) - 1;
       continue;

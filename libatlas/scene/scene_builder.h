@@ -194,6 +194,7 @@ class SceneBuilder {
   void place_normals(Scene& scene);
   void place_uv_aspects(LoadedScene& loaded) const;
   void place_materials(const ReadOptions& options, Scene& scene);
+  void note_file(const RawTexture& raw);
   void load_textures(Scene& scene, bool encoded);
   bool keep_encoded(RawTexture& raw, Scene& scene) const;
   Result<TextureImage> load_texture(const RawTexture& raw) const;

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
@@ -305,6 +306,18 @@ TEST(CabinFiles, AllFormatsReadBackWithTheirLight) {
   float largest = 0;
   for (const glm::vec2& uv : obj->texcoords) largest = std::max({largest, uv.x, uv.y});
   EXPECT_GT(largest, 2) << "textures repeat";
+}
+
+TEST(CabinFiles, StagesEndWhenCancelled) {
+  const std::atomic<bool> yes{true};
+  atlas::Context context;
+  context.cancel = &yes;
+  EXPECT_TRUE(build_cabin(20000, 60000, context).triangles.empty());
+  const TempFolder folder;
+  for (const char* name : {"cabin.obj", "cabin.ply", "cabin.glb"})
+    EXPECT_EQ(write_scene(folder.path / name, shared_cabin(), false, context).code(),
+              atlas::ErrorCode::cancelled);
+  EXPECT_TRUE(fs::is_empty(folder.path));
 }
 
 TEST(CabinFiles, AnUnknownEndingOrFolderIsNamed) {

@@ -205,7 +205,8 @@ TEST(Mtl, ALibraryThatIsNamedAgainIsReadOnce) {
       "s.obj",
       "mtllib m.mtl none.mtl\nmtllib m.mtl\nmtllib none.mtl m.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\n"
       "vt 0 0\nusemtl a\nf 1/1 2/1 3/1\nusemtl b\nf 1/1 2/1 3/1\n"));
-  EXPECT_EQ(loaded.files.size(), 1u);
+  EXPECT_EQ(loaded.files,
+            (std::vector<std::filesystem::path>{folder / "m.mtl", folder / "wood.png"}));
   EXPECT_EQ(loaded.defects.count(DefectKind::reflectance_beyond_one), 1u);
   EXPECT_EQ(loaded.defects.count(DefectKind::material_file_missing), 1u);
   EXPECT_EQ(loaded.scene.textures.size(), 1u);
