@@ -9,10 +9,10 @@ namespace {
 
 // Fine enough for rooms and doors. Scenes of at most kMostCells cells of that size get them.
 constexpr double kCellMetres = 0.25;
-constexpr double kMostCells = 2e6;
+constexpr double kMostCells = 1e6;
 // Nor are cells so fine that the surface has more squares of their size than this: each of them
 // takes about two samples.
-constexpr double kMostSquares = 2e6;
+constexpr double kMostSquares = 1e6;
 constexpr double kSampleDistance = 0.7;  // cells
 // A cell whose triangles face both ways has a front on either side. Their normals cancel, up to
 // this share of their area.

@@ -14,7 +14,7 @@ struct ViewpointOptions {
   // > 0; for the eye height of 1.6 m, which is used where the rooms are tall enough.
   double metres_per_unit = 1;
   // The least number of voxels along the longest side of the box, 8 to 512. There are more where
-  // voxels of 25 cm are smaller, up to two million in all.
+  // voxels of 25 cm are smaller, up to a million in all.
   int cells = 96;
   // What each triangle shows on average, as display values from 0 (black) to 255; empty: unknown.
   std::span<const std::uint8_t> light = {};
