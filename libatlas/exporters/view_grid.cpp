@@ -10,10 +10,12 @@ namespace {
 // Fine enough for rooms and doors. Scenes of at most kMostCells cells of that size get them.
 constexpr double kCellMetres = 0.25;
 constexpr double kMostCells = 1e6;
+constexpr double kMostAlong = 1024;  // of the longest side, which bounds the samples of a sliver
 // Nor are cells so fine that the surface has more squares of their size than this: each of them
 // takes about two samples.
 constexpr double kMostSquares = 1e6;
 constexpr double kSampleDistance = 0.7;  // cells
+constexpr int kLeastRows = 8;            // of samples, unless the triangle is shorter, see mark()
 // A cell whose triangles face both ways has a front on either side. Their normals cancel, up to
 // this share of their area.
 constexpr double kBothWays = 0.1;
@@ -56,7 +58,8 @@ void ViewGrid::choose_cells(double coarsest, double finest) {
   const glm::dvec3 size = box_.size();
   const auto along = [&](int axis) { return std::max(1.0, std::ceil(size[axis] / cell_)); };
   if (!(coarsest > 0)) coarsest = finest = 1;
-  cell_ = std::min(finest, coarsest);
+  const double longest = std::max({size.x, size.y, size.z});
+  cell_ = std::min(std::max(finest, longest / kMostAlong), coarsest);
   while (cell_ < coarsest && along(0) * along(1) * along(2) > kMostCells)
     cell_ = std::min(1.05 * cell_, coarsest);
   for (int a = 0; a < 3; ++a) n_[a] = int(along(a));
@@ -71,9 +74,11 @@ void ViewGrid::mark(const Corners& triangle, float light) {
   const glm::dvec3 normal = glm::cross(b - a, c - a);
   const double longest = glm::distance(a, b), distance = kSampleDistance * cell_;
   const auto steps = [&](double length) { return std::max(1, int(std::ceil(length / distance))); };
-  const int rows = longest > 0 ? steps(glm::length(normal) / longest) : 1;
+  const int along = steps(longest);
+  const int rows =
+      std::max(longest > 0 ? steps(glm::length(normal) / longest) : 1, std::min(along, kLeastRows));
   const auto samples_of_row = [&](int row) {
-    return row == rows ? 1 : 1 + steps(longest * (1 - double(row) / rows));
+    return 1 + int((std::int64_t(along) * (rows - row) + rows - 1) / rows);
   };
   int samples = 0;
   for (int row = 0; row <= rows; ++row) samples += samples_of_row(row);

@@ -60,7 +60,9 @@ std::vector<Eye> eyes_of_columns(const ViewGrid& grid, double metres_per_unit) {
         if (z - floor < 2) continue;
         const double air = (z - floor) * grid.cell();
         // From half a cell above the centre of the floor's cell, there is certainly air.
-        const double height = air >= headroom ? std::max(eye, grid.cell()) : 0.55 * air;
+        // The floor is half a cell below that, more or less.
+        const double height =
+            air >= headroom ? std::max(eye - grid.cell() / 2, grid.cell()) : 0.55 * air;
         glm::dvec3 p = grid.centre(x, y, floor);
         p.z += grid.cell() / 2 + std::min(height, 0.8 * air);
         eyes.push_back({p, floor, air >= headroom});
