@@ -29,7 +29,7 @@ constexpr double kRoomy = 0.1;  // least mean free horizontal distance, per floo
 constexpr double kManyRooms = 0.5;
 // Of a view: the light (display values, 0..1) from which on more does not count, and the factor on
 // the score of one that shows none.
-constexpr double kBright = 0.4, kBlack = 0.05;
+constexpr double kBright = 0.25, kBlack = 0.05;
 // A place shows at least so many times the light of another one before it is taken although it is
 // worse otherwise.
 constexpr double kMuchLighter = 2;
