@@ -6,8 +6,8 @@
 #include <numbers>
 #include <vector>
 
-#include "libatlas/core/bounds.h"
 #include "libatlas/core/glm_bridge.h"
+#include "libatlas/exporters/view_grid.h"
 
 namespace atlas {
 namespace {
@@ -27,109 +27,18 @@ constexpr double kRoomy = 0.1;  // least mean free horizontal distance, per floo
 // In a building of many rooms none is that roomy. It is told from a part with a bore in it by the
 // share of the places where people can stand that are tightly enclosed.
 constexpr double kManyRooms = 0.5;
-// A cell whose triangles face both ways has a front on either side. Their normals cancel, up to
-// this share of their area.
-constexpr double kBothWays = 0.1;
-
-// The scene as voxels, in a frame whose third axis points up. Each cell holds the sum of the
-// area-weighted normals of the triangles in it, which tells the front of a wall from its back, and
-// the sum of these areas.
-class Grid {
- public:
-  Grid(std::span<const Vec3f> positions, std::span<const std::uint32_t> indices,
-       const ViewpointOptions& options, const Context& context)
-      : up_(options.up) {
-    for (const std::uint32_t i : indices) box_.add(to_frame(to_dvec(positions[i])));
-    const glm::dvec3 size = box_.size();
-    cell_ = std::max({size.x, size.y, size.z}) / std::clamp(options.cells, 8, 512);
-    if (!(cell_ > 0)) cell_ = 1;
-    for (int a = 0; a < 3; ++a) n_[a] = std::max(1, int(std::ceil(size[a] / cell_)));
-    normals_.assign(std::size_t(n_[0]) * n_[1] * n_[2], glm::vec3(0));
-    filled_.assign(normals_.size(), 0);
-    areas_.assign(normals_.size(), 0);
-    for (std::size_t t = 0; t + 2 < indices.size() && !(t % 65536 == 0 && context.cancelled());
-         t += 3) {
-      mark(to_frame(to_dvec(positions[indices[t]])), to_frame(to_dvec(positions[indices[t + 1]])),
-           to_frame(to_dvec(positions[indices[t + 2]])));
-    }
-  }
-
-  glm::dvec3 to_frame(const glm::dvec3& p) const {
-    return up_ == Up::z ? p : glm::dvec3(p.z, p.x, p.y);
-  }
-  glm::dvec3 from_frame(const glm::dvec3& p) const {
-    return up_ == Up::z ? p : glm::dvec3(p.y, p.z, p.x);
-  }
-
-  int size(int axis) const { return n_[axis]; }
-  double cell() const { return cell_; }
-  const Bounds<glm::dvec3>& box() const { return box_; }
-  double level_diagonal() const { return std::hypot(box_.size().x, box_.size().y); }
-  bool filled(int x, int y, int z) const { return filled_[index(x, y, z)] != 0; }
-  glm::dvec3 centre(int x, int y, int z) const {
-    return box_.low + (glm::dvec3(x, y, z) + 0.5) * cell_;
-  }
-
-  enum class Hit { nothing, front, back };
-  struct Ray {
-    double distance = 0;  // to the first filled cell, or to the box's border
-    Hit hit = Hit::nothing;
-  };
-
-  // Walks in steps of half a cell. A step may miss the corner of a cell, which does not matter
-  // here.
-  Ray cast(const glm::dvec3& from, const glm::dvec3& direction) const {
-    Ray ray;
-    const double step = cell_ / 2;
-    for (ray.distance = step;; ray.distance += step) {
-      const glm::dvec3 at = (from + direction * ray.distance - box_.low) / cell_;
-      int c[3];
-      for (int a = 0; a < 3; ++a) {
-        if (!(at[a] >= 0 && at[a] < n_[a])) return ray;
-        c[a] = int(at[a]);
-      }
-      const std::size_t i = index(c[0], c[1], c[2]);
-      if (!filled_[i]) continue;
-      const double towards = glm::dot(glm::dvec3(normals_[i]), direction);
-      ray.hit = towards <= kBothWays * double(areas_[i]) ? Hit::front : Hit::back;
-      return ray;
-    }
-  }
-
- private:
-  std::size_t index(int x, int y, int z) const { return (std::size_t(z) * n_[1] + y) * n_[0] + x; }
-
-  void mark(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c) {
-    const glm::dvec3 normal = glm::cross(b - a, c - a);
-    const double longest =
-        std::max({glm::distance(a, b), glm::distance(b, c), glm::distance(c, a)});
-    const int steps = std::clamp(int(std::ceil(longest / (0.7 * cell_))), 1, 2048);
-    const int samples = (steps + 1) * (steps + 2) / 2;
-    const glm::vec3 share = glm::vec3(normal / (cell_ * cell_) / double(samples));
-    const float area = glm::length(share);
-    for (int i = 0; i <= steps; ++i) {
-      for (int j = 0; i + j <= steps; ++j) {
-        const glm::dvec3 p = a + (b - a) * (double(i) / steps) + (c - a) * (double(j) / steps);
-        int k[3];
-        for (int axis = 0; axis < 3; ++axis) {
-          k[axis] = std::clamp(int((p[axis] - box_.low[axis]) / cell_), 0, n_[axis] - 1);
-        }
-        const std::size_t at = index(k[0], k[1], k[2]);
-        filled_[at] = 1;
-        normals_[at] += share;
-        areas_[at] += area;
-      }
-    }
-  }
-
-  Up up_;
-  Bounds<glm::dvec3> box_;
-  double cell_ = 1;
-  std::array<int, 3> n_{};
-  std::vector<glm::vec3> normals_;
-  std::vector<float> areas_;
-  std::vector<std::uint8_t> filled_;
-};
+// Of a view: the light (display values, 0..1) from which on more does not count, and the factor on
+// the score of one that shows none.
+constexpr double kBright = 0.25, kBlack = 0.05;
+// A place shows at least so many times the light of another one before it is taken although it is
+// worse otherwise.
+constexpr double kMuchLighter = 2;
+// The cosine of the angle from the middle of a view within which its light counts.
+constexpr double kWithinView = 0.6;
+// The distance from walls that people keep who are 0.25 m wide (visitor.h), but at most a share of
+// the view; and the factor on the score at a wall.
+constexpr double kClearMetres = 0.5, kClearShare = 0.15, kAtWall = 0.7;
+constexpr std::size_t kMaxNearby = 300;  // places tried around the best one
 
 struct Eye {
   glm::dvec3 position{0};
@@ -139,7 +48,7 @@ struct Eye {
 
 // Returns possible positions of the eye: in each column of cells, one above each floor that has at
 // least two cells of height to the next filled one.
-std::vector<Eye> eyes_of_columns(const Grid& grid, double metres_per_unit) {
+std::vector<Eye> eyes_of_columns(const ViewGrid& grid, double metres_per_unit) {
   const double eye = kEyeMetres / metres_per_unit, headroom = kHeadroomMetres / metres_per_unit;
   std::vector<Eye> eyes;
   for (int y = 0; y < grid.size(1); ++y) {
@@ -151,7 +60,9 @@ std::vector<Eye> eyes_of_columns(const Grid& grid, double metres_per_unit) {
         if (z - floor < 2) continue;
         const double air = (z - floor) * grid.cell();
         // From half a cell above the centre of the floor's cell, there is certainly air.
-        const double height = air >= headroom ? std::max(eye, grid.cell()) : 0.55 * air;
+        // The floor is half a cell below that, more or less.
+        const double height =
+            air >= headroom ? std::max(eye - grid.cell() / 2, grid.cell()) : 0.55 * air;
         glm::dvec3 p = grid.centre(x, y, floor);
         p.z += grid.cell() / 2 + std::min(height, 0.8 * air);
         eyes.push_back({p, floor, air >= headroom});
@@ -163,7 +74,7 @@ std::vector<Eye> eyes_of_columns(const Grid& grid, double metres_per_unit) {
 
 // Returns the positions where people can stand, on the floor that most such columns share, so that
 // nobody starts on a table or under a seat.
-std::vector<Eye> standing(const Grid& grid, const std::vector<Eye>& eyes) {
+std::vector<Eye> standing(const ViewGrid& grid, const std::vector<Eye>& eyes) {
   // For each z, the number of such positions with a floor at z or z + 1.
   std::vector<std::size_t> columns(grid.size(2) + 1, 0);
   for (const Eye& eye : eyes) {
@@ -191,78 +102,173 @@ std::vector<glm::dvec3> sphere(int count) {
 
 struct Judged {
   double score = 0;  // 0: unusable
+  double light = 1;  // of the view, in 0..1: kBright and more is 1, and so is a scene without light
   bool roomy = false;
   bool closed = false;  // people can stand there, tightly enclosed
   glm::dvec3 direction{1, 0, 0};
 };
 
-// Scores a position. The best ones see front faces all around, and have air on every side and a
-// long view.
-Judged judge(const Grid& grid, const Eye& candidate, const std::vector<glm::dvec3>& around) {
-  const glm::dvec3& eye = candidate.position;
-  Judged result;
-  // Most positions in a scene that is seen from outside are not enclosed, which a few rays show.
-  double enclosed = 1;
-  std::size_t open = 0;
-  for (const glm::dvec3& d : around) {
-    if (grid.cast(eye, d).hit == Grid::Hit::front) continue;
-    enclosed = double(around.size() - ++open) / double(around.size());
-    if (enclosed < (candidate.tall ? kEnclosed : kTightlyEnclosed)) return result;
-  }
-  result.closed = candidate.tall && enclosed >= kTightlyEnclosed;
-  std::array<double, kHeadings> free{};
-  double nearest = INFINITY, mean = 0;
-  for (int i = 0; i < kHeadings; ++i) {
-    const double angle = 2 * std::numbers::pi * i / kHeadings;
-    const auto ray = grid.cast(eye, {std::cos(angle), std::sin(angle), 0});
-    free[i] = ray.hit == Grid::Hit::front ? ray.distance : kBackFace * ray.distance;
-    nearest = std::min(nearest, ray.distance);
-    mean += ray.distance / kHeadings;
-  }
-  // A pocket between parts of an object is not a room.
-  result.roomy = mean >= kRoomy * grid.level_diagonal();
-  if (nearest < 1.5 * grid.cell() || !(result.roomy || result.closed)) return result;
-  double best = -1;
-  for (int i = 0; i < kHeadings; ++i) {
-    // The shorter of the two neighbouring directions counts for both, so that the view leads down
-    // the middle of an aisle, not along its wall.
-    const double side = std::min(free[(i + kHeadings - 1) % kHeadings], free[(i + 1) % kHeadings]);
-    const double view = 2 * free[i] + 2 * side;
-    if (view <= best) continue;
-    best = view;
-    const double angle = 2 * std::numbers::pi * i / kHeadings;
-    result.direction = {std::cos(angle), std::sin(angle), 0};
-  }
-  // A long view counts more than the middle of the room: people stand near a wall to see it all.
-  result.score = enclosed * (best / 4 + mean / 4 + std::min(nearest, 0.05 * best));
-  return result;
+glm::dvec3 heading(int i) {
+  const double angle = 2 * std::numbers::pi * i / kHeadings;
+  return {std::cos(angle), std::sin(angle), 0};
 }
 
-struct Best : Judged {
-  glm::dvec3 eye{0};
+class Judge {
+ public:
+  Judge(const ViewGrid& grid, double metres_per_unit)
+      : grid_(grid), clear_(kClearMetres / metres_per_unit), around_(sphere(48)) {}
+
+  // Scores a position. The best ones see front faces all around, and have air on every side and a
+  // long view of something lit.
+  Judged judge(const Eye& candidate) {
+    Judged result;
+    const double enclosed = look_around(candidate);
+    if (enclosed < least_enclosed(candidate)) return result;
+    result.closed = candidate.tall && enclosed >= kTightlyEnclosed;
+    double nearest = INFINITY, mean = 0;
+    for (int i = 0; i < kHeadings; ++i) {
+      level_[i] = grid_.cast(candidate.position, headings_[i]);
+      nearest = std::min(nearest, level_[i].distance);
+      mean += level_[i].distance / kHeadings;
+    }
+    // A pocket between parts of an object is not a room.
+    result.roomy = mean >= kRoomy * grid_.level_diagonal();
+    if (nearest < 1.5 * grid_.cell() || !(result.roomy || result.closed)) return result;
+    const double view = best_view(result);
+    // A long view counts more than the middle of the room: people stand near a wall to see it all.
+    // But they keep clear of it.
+    const double clear = std::min(clear_, kClearShare * view);
+    const double kept = kAtWall + (1 - kAtWall) * std::min(1.0, nearest / clear);
+    const double light = grid_.lit() ? kBlack + (1 - kBlack) * result.light : 1;
+    result.score = enclosed * kept * light * (view + mean / 4 + std::min(nearest, 0.2 * view));
+    return result;
+  }
+
+ private:
+  static double least_enclosed(const Eye& candidate) {
+    return candidate.tall ? kEnclosed : kTightlyEnclosed;
+  }
+
+  // Returns the share of all directions that meet a front face, or less than needed once it is
+  // less: most positions in a scene that is seen from outside are not enclosed, which a few rays
+  // show.
+  double look_around(const Eye& candidate) {
+    double enclosed = 1;
+    std::size_t open = 0;
+    for (std::size_t i = 0; i < around_.size(); ++i) {
+      const auto ray = grid_.cast(candidate.position, around_[i]);
+      light_[i] = ray.light;
+      if (ray.hit == ViewGrid::Hit::front) continue;
+      enclosed = double(around_.size() - ++open) / double(around_.size());
+      if (enclosed < least_enclosed(candidate)) break;
+    }
+    return enclosed;
+  }
+
+  // Returns the length of the best view, and sets its direction and light.
+  double best_view(Judged& result) const {
+    double length = 0, best = -1;
+    for (int i = 0; i < kHeadings; ++i) {
+      const int left = (i + kHeadings - 1) % kHeadings, right = (i + 1) % kHeadings;
+      // The shorter of the two neighbouring directions counts for both, so that the view leads
+      // down the middle of an aisle, not along its wall.
+      const double view = (free(i) + std::min(free(left), free(right))) / 2;
+      const double light = grid_.lit() ? light_of_view(i) : 1;
+      const double worth = grid_.lit() ? view * (kBlack + light) : view;
+      if (worth <= best) continue;
+      best = worth;
+      length = view;
+      result.light = light;
+      result.direction = headings_[i];
+    }
+    return length;
+  }
+
+  double free(int i) const {
+    return level_[i].hit == ViewGrid::Hit::front ? level_[i].distance
+                                                 : kBackFace * level_[i].distance;
+  }
+
+  // What is straight ahead counts twice as much as what is around it.
+  double light_of_view(int i) const {
+    double ahead = 0, beside = 0;
+    for (const int k : {i, (i + 1) % kHeadings, (i + kHeadings - 1) % kHeadings})
+      ahead += level_[k].light / 3;
+    int rays = 0;
+    for (std::size_t k = 0; k < around_.size(); ++k) {
+      if (glm::dot(around_[k], headings_[i]) < kWithinView) continue;
+      beside += light_[k];
+      ++rays;
+    }
+    return std::min(1.0, (2 * ahead + beside / std::max(1, rays)) / 3 / kBright);
+  }
+
+  const ViewGrid& grid_;
+  const double clear_;
+  const std::vector<glm::dvec3> around_;
+  std::vector<double> light_ = std::vector<double>(around_.size());  // one for each of around_
+  std::array<glm::dvec3, kHeadings> headings_ = all_headings();
+  std::array<ViewGrid::Ray, kHeadings> level_{};  // one for each heading
+
+  static std::array<glm::dvec3, kHeadings> all_headings() {
+    std::array<glm::dvec3, kHeadings> result;
+    for (int i = 0; i < kHeadings; ++i) result[i] = heading(i);
+    return result;
+  }
 };
 
-// Returns the best of at most kMaxCandidates positions, which are spread over all of them. If none
-// is roomy, that is the best small room of a building that consists of such rooms.
-Best best_of(const Grid& grid, const std::vector<Eye>& eyes, const Context& context) {
-  const std::vector<glm::dvec3> around = sphere(48);
+struct Best : Judged {
+  Eye eye = {};
+
+  void take(const Judged& judged, const Eye& where) {
+    if (judged.score <= score) return;
+    static_cast<Judged&>(*this) = judged;
+    eye = where;
+  }
+};
+
+// Takes a better place around the best one, if only every `stride`th has been tried.
+void look_nearby(const ViewGrid& grid, const std::vector<Eye>& eyes, Judge& judge, Best& best) {
+  const double stride = double(eyes.size()) / double(kMaxCandidates);
+  if (stride <= 1) return;
+  const double reach = 1.5 * std::sqrt(stride) * grid.cell();
+  std::vector<Eye> near;
+  for (const Eye& eye : eyes) {
+    const glm::dvec3 way = eye.position - best.eye.position;
+    if (std::hypot(way.x, way.y) <= reach && std::abs(eye.floor - best.eye.floor) <= 1)
+      near.push_back(eye);
+  }
+  const std::size_t tried = std::min(near.size(), kMaxNearby);
+  const bool roomy = best.roomy;
+  for (std::size_t i = 0; i < tried; ++i) {
+    const Eye& eye = near[i * near.size() / tried];
+    const Judged judged = judge.judge(eye);
+    if (judged.roomy == roomy) best.take(judged, eye);
+  }
+}
+
+// Returns the best of about kMaxCandidates positions, which are spread over all of them. If none
+// is roomy, or those are dark, that is the best small room of a building that consists of such
+// rooms.
+Best best_of(const ViewGrid& grid, const std::vector<Eye>& eyes, Judge& judge,
+             const Context& context) {
   Best roomy, small;
   const std::size_t tried = std::min(eyes.size(), kMaxCandidates);
   std::size_t closed = 0;
   for (std::size_t i = 0; i < tried && !context.cancelled(); ++i) {
     const Eye& eye = eyes[i * eyes.size() / tried];
-    const Judged judged = judge(grid, eye, around);
+    const Judged judged = judge.judge(eye);
     closed += judged.closed;
-    Best& best = judged.roomy ? roomy : small;
-    if (judged.score <= best.score) continue;
-    static_cast<Judged&>(best) = judged;
-    best.eye = eye.position;
+    (judged.roomy ? roomy : small).take(judged, eye);
   }
-  if (roomy.score > 0) return roomy;
-  return double(closed) >= kManyRooms * double(tried) ? small : Best{};
+  if (double(closed) < kManyRooms * double(tried)) small = {};
+  const bool lighter = small.score > 0 && small.light > kMuchLighter * roomy.light;
+  Best& best = roomy.score > 0 && !lighter ? roomy : small;
+  if (best.score > 0) look_nearby(grid, eyes, judge, best);
+  return best;
 }
 
-Viewpoint from_outside(const Grid& grid) {
+Viewpoint from_outside(const ViewGrid& grid) {
   const glm::dvec3 centre = (grid.box().low + grid.box().high) / 2.0;
   const double radius = std::max(glm::distance(grid.box().low, grid.box().high) / 2, 1e-30);
   const glm::dvec3 towards = glm::normalize(glm::dvec3(0.75, 0.55, 0.4));  // shows three sides
@@ -280,13 +286,18 @@ Viewpoint from_outside(const Grid& grid) {
 Viewpoint choose_viewpoint(std::span<const Vec3f> positions, std::span<const std::uint32_t> indices,
                            const ViewpointOptions& options, const Context& context) {
   if (indices.empty()) return {};
-  const Grid grid(positions, indices, options, context);
+  const ViewGrid grid(positions, indices, options, context);
   const std::vector<Eye> eyes = eyes_of_columns(grid, options.metres_per_unit);
-  Best best = best_of(grid, standing(grid, eyes), context);
-  if (best.score == 0) best = best_of(grid, eyes, context);
+  Judge judge(grid, options.metres_per_unit);
+  Best best = best_of(grid, standing(grid, eyes), judge, context);
+  // Another floor may be lit.
+  if (best.score == 0 || kMuchLighter * best.light < 1) {
+    const Best other = best_of(grid, eyes, judge, context);
+    if (best.score == 0 || other.light > kMuchLighter * best.light) best = other;
+  }
   if (best.score == 0) return from_outside(grid);
   Viewpoint view;
-  view.position = from_glm(grid.from_frame(best.eye));
+  view.position = from_glm(grid.from_frame(best.eye.position));
   view.direction = from_glm(grid.from_frame(best.direction));
   view.fov = kFov;
   view.inside = true;

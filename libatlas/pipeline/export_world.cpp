@@ -353,9 +353,14 @@ class Export {
 
   Status write() {
     const Context& context = record_.begin("writing");
-    const ExportToWrite made{
-        scene_,     options_,      charts_, layout_, coarse_ ? &*coarse_ : nullptr,
-        plan_.bake, image_sources_};
+    const ExportToWrite made{scene_,
+                             options_,
+                             charts_,
+                             layout_,
+                             coarse_ ? &*coarse_ : nullptr,
+                             plan_.bake,
+                             sampler_ ? &*sampler_ : nullptr,
+                             image_sources_};
     Result<StageOutcome> written = write_export(made, files_, report_, context);
     if (!written.ok()) return written.status();
     record_.finish(std::move(*written));

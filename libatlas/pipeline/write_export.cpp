@@ -2,11 +2,16 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
 #include <cstdint>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "libatlas/core/glm_bridge.h"
+#include "libatlas/core/luma.h"
+#include "libatlas/core/parallel.h"
+#include "libatlas/core/srgb.h"
 #include "libatlas/exporters/viewpoint.h"
 #include "libatlas/exporters/world.h"
 #include "libatlas/pipeline/assemble_world.h"
@@ -18,6 +23,41 @@
 
 namespace atlas {
 namespace {
+
+// Returns what each triangle shows on average, as display values. Three samples are enough for the
+// choice of a viewpoint.
+std::vector<std::uint8_t> shown_light(const ExportToWrite& made, const ToneMapping& tone,
+                                      const Context& context) {
+  const Scene& scene = made.scene;
+  std::vector<std::uint8_t> shown(scene.triangle_count());
+  parallel_for(context, shown.size(), 4096, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t t = begin; t < end; ++t) {
+      const auto corner = [&](int k) { return to_dvec(scene.positions[scene.indices[3 * t + k]]); };
+      const double spacing =
+          std::sqrt(glm::length(glm::cross(corner(1) - corner(0), corner(2) - corner(0))) / 2);
+      const auto triangle = made.light->prepare(std::uint32_t(t), spacing);
+      float sum = 0;
+      for (const int k : {0, 1, 2}) {
+        const float b[2] = {k == 0 ? 2 / 3.0f : 1 / 6.0f, k == 1 ? 2 / 3.0f : 1 / 6.0f};
+        const Vec3f shows =
+            tone.display(LuminanceSampler::sample(triangle, b[0], b[1], 1 - b[0] - b[1]));
+        sum += luma(shows.x, shows.y, shows.z);
+      }
+      shown[t] = quantize8(sum / 3);
+    }
+  });
+  return shown;
+}
+
+Viewpoint viewpoint_of(const ExportToWrite& made, const ToneMapping& tone, const Context& context) {
+  const std::vector<std::uint8_t> light =
+      made.baked ? shown_light(made, tone, context) : std::vector<std::uint8_t>();
+  ViewpointOptions eye;
+  eye.up = made.options.up;
+  eye.metres_per_unit = made.scene.metres_per_unit;
+  eye.light = light;
+  return choose_viewpoint(made.scene.positions, made.scene.indices, eye, context);
+}
 
 World make_world(const ExportToWrite& made, const WorldMesh& mesh, ExportReport& report,
                  const Context& context) {
@@ -51,10 +91,7 @@ World make_world(const ExportToWrite& made, const WorldMesh& mesh, ExportReport&
     keep_scene(made.scene, made.charts, world);
     world.uv_set = options.uv_set;
   } else if (holds_viewpoint(options.target)) {
-    ViewpointOptions eye;
-    eye.up = options.up;
-    eye.metres_per_unit = made.scene.metres_per_unit;
-    world.viewpoint = choose_viewpoint(made.scene.positions, made.scene.indices, eye, context);
+    world.viewpoint = viewpoint_of(made, report.tone, context);
   }
   for (std::size_t p = 0; p < made.image_sources.size(); ++p) {
     world.pages[p].image = report.pages[p].image;

@@ -13,6 +13,7 @@
 #include "libatlas/report/export_report.h"
 #include "libatlas/scene/scene.h"
 #include "libatlas/simplify/simplify.h"
+#include "libatlas/texture/luminance.h"
 
 namespace atlas {
 
@@ -22,8 +23,9 @@ struct ExportToWrite {
   const ExportOptions& options;
   const ChartSet& charts;
   const PageLayout& layout;
-  const SimplifiedMesh* coarse = nullptr;  // null: the scene's own triangles are written
-  bool baked = false;                      // the pages hold light
+  const SimplifiedMesh* coarse = nullptr;   // null: the scene's own triangles are written
+  bool baked = false;                       // the pages hold light
+  const LuminanceSampler* light = nullptr;  // that light; not null if baked
   // One per page with an image: where it lies until the files are committed.
   std::span<const std::filesystem::path> image_sources = {};
 };

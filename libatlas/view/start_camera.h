@@ -7,8 +7,9 @@
 namespace atlas {
 
 // Returns a camera inside the scene if the scene surrounds a visitor, as where exported worlds
-// begin (choose_viewpoint()). Otherwise, and if `up` is the x axis, the camera looks at the whole
-// scene from a little above its side. `up` must be an axis.
+// begin (choose_viewpoint()), with a view of something lit if the scene shows light. Otherwise, and
+// if `up` is the x axis, the camera looks at the whole scene from a little above its side. `up`
+// must be an axis.
 Camera start_camera(const ViewScene& scene, const Vec3d& up,
                     double fov_degrees = Camera{}.fov_degrees);
 

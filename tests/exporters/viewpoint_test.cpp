@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <fstream>
@@ -110,6 +111,102 @@ TEST(ViewpointChoice, StandsInARoomOfABuildingOfManyRooms) {
     EXPECT_LT(std::abs(std::remainder(view.position.x - 2, 4)), 1.5);
     EXPECT_LT(std::abs(std::remainder(view.position.y - 2.5, 5)), 2);
   }
+}
+
+// Rooms that are small beside the building, which is far longer than they are high.
+TEST(ViewpointChoice, StandsInARoomOfALongBuilding) {
+  Triangles office;
+  for (int i = 0; i < 40; ++i)
+    for (int j = 0; j < 12; ++j)
+      add_box(office, {3.75f * i, 5.0f * j, 0}, {3.75f * i + 3.7f, 5.0f * j + 4.95f, 2.8f}, true);
+  ViewpointOptions options;
+  options.up = Up::z;
+  const Viewpoint view = choose_viewpoint(office.positions, office.indices, options, {});
+  EXPECT_TRUE(view.inside);
+  EXPECT_NEAR(view.position.z, 1.6, 0.3);
+  EXPECT_LT(std::abs(std::remainder(view.position.x - 1.85, 3.75)), 1.6);
+  EXPECT_LT(std::abs(std::remainder(view.position.y - 2.475, 5)), 2.2);
+}
+
+// A person of 0.25 m keeps half a metre from the walls, and has still most of the room ahead.
+TEST(ViewpointChoice, KeepsAwayFromWalls) {
+  for (const double metres : {1.0, 0.001, 1000.0}) {
+    Triangles room;
+    add_box(room, {0, 0, 0}, {4, 4, 3}, true);
+    for (Vec3f& p : room.positions)
+      p = {float(p.x / metres), float(p.y / metres), float(p.z / metres)};
+    ViewpointOptions options;
+    options.up = Up::z;
+    options.metres_per_unit = metres;
+    const Viewpoint view = choose_viewpoint(room.positions, room.indices, options, {});
+    const double x = view.position.x * metres, y = view.position.y * metres;
+    EXPECT_GT(std::min({x, y, 4 - x, 4 - y}), 0.45);
+    EXPECT_GT(std::max(std::abs(x - 2), std::abs(y - 2)), 0.9);
+    EXPECT_LT((x - 2) * view.direction.x + (y - 2) * view.direction.y, 0) << "looks at a wall";
+  }
+}
+
+// The largest rooms are dark. The walls between the rooms face both ways.
+TEST(ViewpointChoice, StandsInALitRoom) {
+  Triangles office;
+  ViewpointOptions options;
+  options.up = Up::z;
+  std::vector<std::uint8_t> light;
+  const std::array<float, 6> walls{0, 9, 13, 17, 21, 30};
+  for (int i = 0; i < 5; ++i) {
+    add_box(office, {walls[i], 0, 0}, {walls[i + 1], 5, 2.8f}, true);
+    light.resize(office.indices.size() / 3, i == 2 ? 150 : 0);
+  }
+  const Viewpoint unknown = choose_viewpoint(office.positions, office.indices, options, {});
+  EXPECT_TRUE(unknown.position.x < 9 || unknown.position.x > 21);
+  options.light = light;
+  const Viewpoint view = choose_viewpoint(office.positions, office.indices, options, {});
+  EXPECT_TRUE(view.inside);
+  EXPECT_GT(view.position.x, 13);
+  EXPECT_LT(view.position.x, 17);
+}
+
+TEST(ViewpointChoice, LooksAtTheLitEndOfARoom) {
+  for (const bool turned : {false, true}) {
+    Triangles hall;
+    ViewpointOptions options;
+    options.up = Up::z;
+    std::vector<std::uint8_t> light;
+    // Two halves without a wall between them.
+    for (const float x : {0.0f, 10.0f}) {
+      Triangles half;
+      add_box(half, {x, 0, 0}, {x + 10, 6, 3}, true);
+      for (std::size_t t = 0; t < half.indices.size(); t += 3) {
+        const auto at_middle = [&](std::size_t k) {
+          return half.positions[half.indices[t + k]].x == 10;
+        };
+        if (at_middle(0) && at_middle(1) && at_middle(2)) continue;
+        for (std::size_t k = 0; k < 3; ++k)
+          hall.indices.push_back(std::uint32_t(hall.positions.size()) + half.indices[t + k]);
+        light.push_back((x > 0) != turned ? 128 : 0);
+      }
+      hall.positions.insert(hall.positions.end(), half.positions.begin(), half.positions.end());
+    }
+    options.light = light;
+    const Viewpoint view = choose_viewpoint(hall.positions, hall.indices, options, {});
+    EXPECT_TRUE(view.inside);
+    EXPECT_GT(turned ? -view.direction.x : view.direction.x, 0.8);
+  }
+}
+
+// The floor that most places share is dark, the other one is not.
+TEST(ViewpointChoice, StandsOnALitFloor) {
+  Triangles house;
+  add_box(house, {0, 0, 0}, {20, 12, 2.8f}, true);
+  std::vector<std::uint8_t> light(house.indices.size() / 3, 0);
+  add_box(house, {0, 0, 3}, {15, 12, 5.8f}, true);
+  light.resize(house.indices.size() / 3, 150);
+  ViewpointOptions options;
+  options.up = Up::z;
+  options.light = light;
+  const Viewpoint view = choose_viewpoint(house.positions, house.indices, options, {});
+  EXPECT_TRUE(view.inside);
+  EXPECT_NEAR(view.position.z, 4.6, 0.3);
 }
 
 // A large part with a bore that people could walk through.

@@ -10,6 +10,7 @@
 #include <functional>
 #include <limits>
 #include <sstream>
+#include <string>
 #include <utility>
 
 #include "libatlas/pipeline/export_world.h"
@@ -393,6 +394,37 @@ TEST(Plan, CountsTheTexelsThatTexturesAskFor) {
   EXPECT_NEAR(make_plan(scene, options).estimated_texels, 9e6, 900);
   options.follow_textures = false;
   EXPECT_NEAR(make_plan(scene, options).estimated_texels, 1e6, 100);
+}
+
+// Of two equal rooms, a world opens in the one that is lit.
+TEST(Export, OpensInALitRoom) {
+  for (const bool second_lit : {false, true}) {
+    LoadedScene rooms = lit_room(8);
+    Scene& scene = rooms.scene;
+    const Scene other = scene;
+    const auto count = std::uint32_t(scene.positions.size());
+    for (Vec3f p : other.positions) scene.positions.push_back({p.x + 5, p.y, p.z});
+    for (const std::uint32_t i : other.indices) scene.indices.push_back(i + count);
+    scene.triangle_material.resize(scene.triangle_count(), 0);
+    scene.triangle_object.resize(scene.triangle_count(), 0);
+    const Vec3f dark{0, 0, 0};
+    for (std::uint32_t v = 0; v < count; ++v)
+      scene.illumination.push_back(second_lit ? scene.illumination[v] : dark);
+    if (second_lit) std::fill_n(scene.illumination.begin(), count, dark);
+    const TempFolder folder;
+    ExportOptions options = small_pages(folder);
+    options.target = folder / "world.wrl";
+    options.up = Up::z;
+    const auto report = export_world(rooms, options, {}, {});
+    ASSERT_TRUE(report.ok()) << report.status().message();
+    std::ifstream file(options.target);
+    std::stringstream text;
+    text << file.rdbuf();
+    const std::size_t at = text.str().find("position ");
+    ASSERT_NE(at, std::string::npos);
+    const double x = std::stod(text.str().substr(at + 9));
+    EXPECT_EQ(x > 4.5 + scene.origin.x, second_lit) << x;
+  }
 }
 
 }  // namespace

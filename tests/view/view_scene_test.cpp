@@ -11,6 +11,7 @@
 #include "libatlas/scene/check_scene.h"
 #include "libatlas/view/start_camera.h"
 #include "libatlas/view/view_scene.h"
+#include "tests/exporters/boxes.h"
 #include "tests/view/shapes.h"
 
 namespace atlas::testing {
@@ -372,6 +373,40 @@ TEST(StartCamera, TheEyeIsAsHighInAnyUnit) {
     for (Vec3f& p : scene.positions) p = {p.x * units, p.y * units, p.z * units};
     scene.metres_per_unit = 1 / double(units);
     EXPECT_NEAR(start_camera(*make_view_scene(scene, {}), {0, 1, 0}).eye.y / units, eye, 1e-3);
+  }
+}
+
+// The light is at the vertices, or on pages, the upper halves of which are white.
+TEST(StartCamera, StandsInALitRoom) {
+  for (const bool second_lit : {false, true}) {
+    for (const bool pages : {false, true}) {
+      test::Triangles rooms;
+      test::add_box(rooms, {0, 0, 0}, {5, 4, 3}, true);
+      test::add_box(rooms, {6, 0, 0}, {11, 4, 3}, true);
+      Scene scene;
+      scene.positions = rooms.positions;
+      scene.indices = rooms.indices;
+      if (pages) {
+        scene.textures.resize(1);
+        scene.textures[0].image = Image8(4, 4, 3);
+        std::fill_n(scene.textures[0].image.at(0, 2), 24, std::uint8_t(255));
+        scene.materials.resize(1);
+        scene.materials[0].texture = 0;
+        scene.materials[0].unlit = true;
+      }
+      for (std::size_t v = 0; v < 16; ++v) {
+        const bool lit = (v >= 8) == second_lit;
+        if (pages) {
+          scene.texcoords.push_back({0.5f, lit ? 0.8f : 0.2f});
+        } else {
+          scene.illumination.push_back(lit ? Vec3f{700, 700, 700} : Vec3f{0, 0, 0});
+        }
+      }
+      if (pages) scene.texcoord_indices = scene.indices;
+      ASSERT_TRUE(complete_scene(scene).ok());
+      const Camera camera = start_camera(*make_view_scene(scene, {}), {0, 0, 1});
+      EXPECT_EQ(camera.eye.x > 5.5, second_lit) << pages << ' ' << camera.eye.x;
+    }
   }
 }
 
