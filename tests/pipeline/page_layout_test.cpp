@@ -83,7 +83,9 @@ TEST(Layout, GuttersBoundWhatChartsCover) {
         const double covered = free_aspect ? layout->uv_utilization : area / (256 * 256);
         const double most = most_covered(charts, 1, options);
         EXPECT_LE(covered, most) << size.x << " x " << size.y << ", " << count;
-        if (count == 40) EXPECT_LT(most, size.y >= 40 ? 0.9 : 0.1) << size.x << " x " << size.y;
+        if (count == 40) {
+          EXPECT_LT(most, size.y >= 40 ? 0.9 : 0.1) << size.x << " x " << size.y;
+        }
       }
   EXPECT_EQ(most_covered(boxes_of({{5, 0}}), 1, {}), 0);
 }
