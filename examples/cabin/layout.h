@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "examples/cabin/cabin_mesh.h"
+#include "libatlas/core/context.h"
 
 namespace cabin {
 

@@ -6,6 +6,7 @@
 #include <bit>
 #include <cmath>
 #include <cstdio>
+#include <filesystem>
 #include <nlohmann/json.hpp>
 #include <sstream>
 #include <string>
@@ -41,6 +42,23 @@ TEST_F(AtlasPack, MaterialFilesHaveSafeNames) {
   write("n.obj", "mtllib " + name + "\n" + kTriangle);
   EXPECT_EQ(run("mesh n.obj -o 'a #1.obj' --page 64").exit_code, 2);
   EXPECT_EQ(read(name), "newmtl red\n");
+}
+
+TEST_F(AtlasPack, MeshListsWhatItWasMadeFrom) {
+  write("a.mtl", "newmtl red\n");
+  write("m n.obj", std::string("mtllib a.mtl none.mtl\n") + kTriangle);
+  const RunResult r = run("mesh 'm n.obj' -o out.obj --page 64 --depfile out.d");
+  ASSERT_EQ(r.exit_code, 0) << r.output;
+  EXPECT_EQ(read("out.d"), "out.obj: \\\n  m\\ n.obj \\\n  a.mtl\n");
+  for (const char* same : {"'m n.obj'", "a.mtl", "out.obj", "out.mtl"})
+    EXPECT_EQ(run(fmt::format("mesh 'm n.obj' -o out.obj --page 64 --depfile {}", same)).exit_code,
+              2)
+        << same;
+  write("none.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+  EXPECT_EQ(run("mesh none.obj -o new.obj --depfile new.d").exit_code, 1);
+  EXPECT_EQ(run("mesh 'm n.obj' -o 'a;b.obj' --page 64 --depfile new.d").exit_code, 2);
+  EXPECT_FALSE(std::filesystem::exists(dir_ / "new.d") ||
+               std::filesystem::exists(dir_ / "a;b.obj"));
 }
 
 // Returns the uvs of an OBJ in its order.
