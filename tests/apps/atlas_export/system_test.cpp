@@ -145,8 +145,9 @@ TEST_F(System, MemoryThatIsNotThere) {
   for (int i = 0; i < 60'000; ++i)
     obj += fmt::format("v {0} 0 0 1 1 1\nv {0} 1 0 1 1 1\nv {0} 1 1 1 1 1\nf -1 -2 -3\n", i);
   const fs::path scene = folder_.write("many.obj", obj);
-  const RunResult r = run_limited(
-      80000, fmt::format("{} {} -o {} -q --threads 1", ATLAS_EXPORT, scene.string(), to("w.glb")));
+  // With light, the module for image files would be what finds no room.
+  const RunResult r = run_limited(50000, fmt::format("{} {} -o {} -q --threads 1 --charts-only",
+                                                     ATLAS_EXPORT, scene.string(), to("w.glb")));
   EXPECT_EQ(r.exit_code, 1) << r.output;
   EXPECT_NE(r.output.find("out of memory"), std::string::npos) << r.output;
   EXPECT_EQ(folder_.count(), 2u);
