@@ -42,7 +42,7 @@ TEST(RaggedRims, TakeLittleLongerThanSmoothOnes) {
   const double smooth = seconds(saw(40000, 1)), ragged = seconds(saw(40000, 1.5f));
   EXPECT_LT(ragged, 40 * smooth) << smooth;
   EXPECT_LT(ragged, 4 * kSlowness);
-  // Four times as many teeth take about four times as long; a quadratic search took sixteen times.
+  // Four times as many teeth take about four times as long, with a quadratic search sixteen times.
   EXPECT_LT(ragged, 9 * seconds(saw(10000, 1.5f)));
 }
 
