@@ -84,21 +84,29 @@ ChartOutlines::ChartOutlines(const ChartSet& set, std::span<const Vec2d> density
   }
 }
 
-LayoutProblem::LayoutProblem(const WantedCharts& wanted, const LayoutEffort& how)
-    : charts(wanted.charts),
-      texels_per_unit(wanted.texels_per_unit),
-      options(how),
-      items(charts.charts.size()) {
-  for (std::size_t c = 0; c < items.size(); ++c) {
-    items[c] = {charts.charts[c].size.x * texels_per_unit[c].x,
-                charts.charts[c].size.y * texels_per_unit[c].y};
-  }
+FitOptions box_fit_options(const LayoutOptions& options) {
+  FitOptions fit;
   fit.pages = options.pages;
   fit.page_size = options.page_size;
   fit.padding = options.padding;
   fit.alignment = options.alignment;
   fit.minimum_side = options.minimum_side;
   fit.allow_rotation = options.allow_rotation;
+  return fit;
+}
+
+FitItem chart_box(const Chart& chart, Vec2d texels_per_unit) {
+  return {chart.size.x * texels_per_unit.x, chart.size.y * texels_per_unit.y};
+}
+
+LayoutProblem::LayoutProblem(const WantedCharts& wanted, const LayoutEffort& how)
+    : charts(wanted.charts),
+      texels_per_unit(wanted.texels_per_unit),
+      options(how),
+      items(charts.charts.size()) {
+  for (std::size_t c = 0; c < items.size(); ++c)
+    items[c] = chart_box(charts.charts[c], texels_per_unit[c]);
+  static_cast<FitOptions&>(fit) = box_fit_options(options);
   fit.preset = options.preset;
   // Effort is limited instead of time, because a limit on time would make the result depend on
   // how busy the machine is.

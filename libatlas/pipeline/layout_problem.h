@@ -23,6 +23,12 @@ struct ChartOutlines {
   ChartOutlines(const ChartSet& set, std::span<const Vec2d> density);
 };
 
+// Returns the packer's options for boxes: the number and size of pages, gutters, sides and turns.
+FitOptions box_fit_options(const LayoutOptions& options);
+
+// Returns a chart's box in texels at scale 1.
+FitItem chart_box(const Chart& chart, Vec2d texels_per_unit);
+
 // The problem for the packer, by boxes or by outlines as options.outlines says. What it is made
 // from must outlive it.
 struct LayoutProblem {

@@ -9,6 +9,7 @@
 
 #include "libatlas/charts/tiles.h"
 #include "libatlas/pack/fit.h"
+#include "libatlas/pipeline/layout_problem.h"
 
 namespace atlas {
 namespace {
@@ -33,25 +34,14 @@ struct BoxFit {
 
 BoxFit fit_boxes(std::span<const FitItem> items, const LayoutOptions& options,
                  const Context& context) {
-  FitOptions fit;
-  fit.pages = options.pages;
-  fit.page_size = options.page_size;
-  fit.padding = options.padding;
-  fit.alignment = options.alignment;
-  fit.minimum_side = options.minimum_side;
-  fit.allow_rotation = options.allow_rotation;
-  const Result<FitResult> fitted = fit_pages(items, fit, context);
+  const Result<FitResult> fitted = fit_pages(items, box_fit_options(options), context);
   return fitted.ok() ? BoxFit{fitted->scale, fitted->utilization} : BoxFit{};
-}
-
-FitItem box_of(const Chart& chart, Vec2d density) {
-  return {chart.size.x * density.x, chart.size.y * density.y};
 }
 
 std::vector<FitItem> boxes_of(const SizedCharts& sized) {
   std::vector<FitItem> boxes;
   for (std::size_t c = 0; c < sized.densities.size(); ++c)
-    boxes.push_back(box_of(sized.charts.charts[c], sized.densities[c]));
+    boxes.push_back(chart_box(sized.charts.charts[c], sized.densities[c]));
   return boxes;
 }
 
@@ -75,7 +65,7 @@ Pieces divide(const SizedCharts& sized, double longest) {
   Pieces pieces;
   for (std::size_t c = 0; c < sized.densities.size(); ++c) {
     const Chart& chart = sized.charts.charts[c];
-    const FitItem box = box_of(chart, sized.densities[c]);
+    const FitItem box = chart_box(chart, sized.densities[c]);
     const double side = may_cut(sized.densities[c]) ? longest : kUnlimited;
     const double columns = std::max(1.0, std::ceil(box.width / side));
     const double rows = std::max(1.0, std::ceil(box.height / side));
