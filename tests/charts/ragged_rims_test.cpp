@@ -1,9 +1,11 @@
 // Limbs of charts with ragged rims are looked for in limited time.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <atomic>
 #include <chrono>
 #include <cmath>
+#include <limits>
 #include <thread>
 
 #include "libatlas/charts/filling/limb_cutter.h"
@@ -27,21 +29,26 @@ Shape saw(int n, float outer) {
   return shape;
 }
 
+// Returns the CPU seconds of the faster of two runs, which other work on the machine slows less.
 double seconds(const Shape& shape) {
   const Mesh mesh(shape);
   Context one;
   one.threads = 1;
-  const double begun = cpu_seconds();
-  const Result<ChartSet> set = make_charts(mesh.view(), {}, one);
-  EXPECT_TRUE(set.ok());
-  EXPECT_EQ(set->charts.size(), 1u);
-  return cpu_seconds() - begun;
+  double least = std::numeric_limits<double>::infinity();
+  for (int run = 0; run < 2; ++run) {
+    const double begun = cpu_seconds();
+    const Result<ChartSet> set = make_charts(mesh.view(), {}, one);
+    least = std::min(least, cpu_seconds() - begun);
+    EXPECT_TRUE(set.ok());
+    EXPECT_EQ(set->charts.size(), 1u);
+  }
+  return least;
 }
 
 TEST(RaggedRims, TakeLittleLongerThanSmoothOnes) {
   const double smooth = seconds(saw(40000, 1)), ragged = seconds(saw(40000, 1.5f));
   EXPECT_LT(ragged, 40 * smooth) << smooth;
-  EXPECT_LT(ragged, 4 * kSlowness);
+  EXPECT_LT(ragged, 2 * kSlowness);
   // Four times as many teeth take about four times as long, with a quadratic search sixteen times.
   EXPECT_LT(ragged, 9 * seconds(saw(10000, 1.5f)));
 }
