@@ -12,7 +12,8 @@ namespace {
 
 using Bytes = std::span<const std::uint8_t>;
 
-constexpr std::string_view kJpeg = "\xff\xd8", kGif = "GIF8", kCodeStream = "\xff\x4f\xff\x51";
+// Readers of GIF look at no more of the signature than this.
+constexpr std::string_view kJpeg = "\xff\xd8", kGif = "GIF", kCodeStream = "\xff\x4f\xff\x51";
 constexpr double kHarmlessBytes = 64.0 * (1 << 20);
 
 std::int64_t big_endian(Bytes bytes, std::size_t at, int count) {
@@ -80,6 +81,15 @@ std::optional<ImageClaim> claim_of(Bytes head) {
   if (begins_with(head, kGif)) return gif_claim(head);
   if (is_jpeg2000(head)) return jpeg2000_claim(head);
   return {};
+}
+
+// After the file's header of 14 bytes follows another that begins with its own size. In all but the
+// oldest, of 12 bytes, byte 14 states the bits of a texel, and byte 16 the compression.
+bool bmp_lacks_palette(Bytes head) {
+  constexpr std::uint8_t kOldest = 12, kRuns8 = 1, kRuns4 = 2, kMostPaletteBits = 8;
+  if (!begins_with(head, "BM") || head.size() < 34 || head[14] == kOldest) return false;
+  const std::uint8_t bits = head[28], compression = head[30];
+  return (compression == kRuns8 || compression == kRuns4) && bits > kMostPaletteBits;
 }
 
 Status check_claim(const ImageClaim& claim, std::uint64_t file_bytes, const std::string& name) {

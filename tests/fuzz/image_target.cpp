@@ -37,6 +37,8 @@ FuzzResult fuzz_image(FuzzBytes bytes, const std::string& extension) {
   if (fault.empty()) fault = judge(floats, name);
   if (fault.empty()) fault = judge(decode_image8(bytes, "image 1"), "image 1");
   if (!fault.empty()) return {fault};
+  const bool large = !floats.ok() && floats.status().message().find(": claims ") != name.npos;
+  if (large) return {};  // floats take four times the memory
   if (image.ok() != floats.ok()) return {"read as bytes or as floats, but not as both"};
   if (!image.ok()) return {};
   if (image->width != floats->width || image->height != floats->height)
