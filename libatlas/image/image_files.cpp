@@ -249,6 +249,8 @@ Result<Source> open_file(const std::filesystem::path& path) {
   const std::vector<std::uint8_t> head = head_of(path, source.bytes);
   if (bmp_lacks_palette(head))
     return failure(path, "image is damaged", "it is compressed, but has no palette (save it anew)");
+  if (exr_overclaims(head, source.bytes))
+    return failure(path, "image is damaged", "its header claims more than it holds (save it anew)");
   if (const auto claim = claim_of(head)) {
     if (Status s = check_claim(*claim, source.bytes, source.name); !s.ok()) return s;
   }

@@ -220,6 +220,32 @@ TEST(HostileImage, RunsOfABitmapNeedAPalette) {
   EXPECT_EQ(*whole->at(1, 0), 0x30);
 }
 
+// A file of several parts, where this is found in the second. OpenEXR took a gigabyte.
+TEST(HostileImage, NoMemoryForAttributesOfHalfAFile) {
+  const TempFolder folder;
+  const auto attribute = [](std::uint32_t length, const std::string& value) {
+    return std::string("a\0opaque\0", 9) + little(length, 4) + value;
+  };
+  const std::string start("\x76\x2f\x31\1\2\x10\0\0", 8), part = attribute(3, "abc") + '\0';
+  for (const std::uint32_t length : {1u << 30, ~0u}) {
+    const auto path = folder.write("a.exr", start + part + attribute(length, "abc"));
+    const auto read = read_image_float(path);
+    ASSERT_FALSE(read.ok());
+    EXPECT_EQ(read.status().message(), path.string() +
+                                           ": image is damaged: its header claims more "
+                                           "than it holds (save it anew)");
+  }
+  EXPECT_LT(peak_memory(), std::int64_t{800} << 20);
+  const std::string whole = start + part + part + '\0';
+  const auto judged = [&](std::size_t bytes) {
+    const std::string head = whole.substr(0, bytes);
+    return exr_overclaims({reinterpret_cast<const std::uint8_t*>(head.data()), bytes}, bytes);
+  };
+  EXPECT_FALSE(judged(whole.size()));
+  EXPECT_TRUE(judged(8 + 9 + 4 + 2));  // within the first value
+  EXPECT_FALSE(judged(8 + 5));         // within a type: nothing is claimed yet
+}
+
 // OpenImageIO gives two lines for it.
 TEST(HostileImage, ErrorsAreOneLine) {
   const TempFolder folder;
