@@ -29,11 +29,15 @@ std::string xml_text(const std::string& text) {
   return safe;
 }
 
-// Returns the box of an item on its page, y down.
+// Returns the box of an item on its page, y down. Items without area may be longer than the page:
+// they end where numbers do.
 Rect box_of(const PackedItem& item) {
+  constexpr std::int32_t kEnd = std::numeric_limits<std::int32_t>::max();
+  const auto [x, y] = std::pair(item.at.x, item.at.y);
   Extent e = item.size;
   if (item.at.rotated) std::swap(e.width, e.height);
-  return {item.at.x, item.at.y, e.width, e.height};
+  return {x, y, std::min(e.width, kEnd - std::max(x, 0)),
+          std::min(e.height, kEnd - std::max(y, 0))};
 }
 
 // Returns the colour of a number. The hue advances in golden-ratio steps, and the brightness
@@ -57,7 +61,7 @@ int difference(const Rgb& a, const Rgb& b) {
 }
 
 bool neighbours(const PackedItem& a, const PackedItem& b) {
-  constexpr std::int64_t kNear = 16;  // gutters are narrower; sides may be the largest integer
+  constexpr std::int64_t kNear = 16;  // gutters are narrower; a box may end at the largest integer
   if (!a.at.placed() || a.at.page != b.at.page) return false;
   const Rect p = box_of(a), q = box_of(b);
   return p.x <= q.right() + kNear && q.x <= p.right() + kNear && p.y <= q.top() + kNear &&

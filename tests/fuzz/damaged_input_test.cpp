@@ -12,6 +12,7 @@
 #include "tests/fuzz/targets.h"
 #include "tests/image/file_bytes.h"
 #include "tests/scene/gltf_maker.h"
+#include "tests/support/leaks.h"
 
 namespace atlas {
 namespace {
@@ -277,10 +278,10 @@ const std::string kLight = R"(1 2 3
 2
 )";
 
-int accepted_of(const std::string& seed, const auto& target) {
+int accepted_of(const std::string& seed, const auto& target, int rounds = 500) {
   std::mt19937 random(6);
   int accepted = 0;
-  for (int round = 0; round < 500; ++round) {
+  for (int round = 0; round < rounds; ++round) {
     const test::FuzzResult result = target(damaged(seed, 3, random));
     EXPECT_EQ(result.fault, "") << "round " << round;
     if (!result.fault.empty()) break;
@@ -329,7 +330,7 @@ std::vector<Seed> images() {
   const std::string tga = std::string("\0\0\2\0\0\0\0\0\0\0\0\0", 12) + little(3, 2) +
                           little(2, 2) + std::string("\x18\0", 2) + texels;
   const std::string gif = "GIF89a" + little(1, 2) + little(1, 2) +
-                          std::string("\x80\0\0\1\2\3\4\5\6,\0\0\0\0\1\0\1\0\0\2\2\x44\1\0;", 27);
+                          std::string("\x80\0\0\1\2\3\4\5\6,\0\0\0\0\1\0\1\0\0\2\2\x44\1\0;", 25);
   return {{"png", test::TempFolder::read(folder.path() / "a.png")},
           {"exr", test::TempFolder::read(folder.path() / "a.exr")},
           {"hdr", "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 2 +X 3\n" + std::string(24, '\x80')},
@@ -339,21 +340,23 @@ std::vector<Seed> images() {
 }
 
 TEST(DamagedImages, AreReadOrRefused) {
+  const test::IgnoreLeaks readers;  // OpenImageIO never frees the texts of its errors
   for (const Seed& seed : images()) {
     const test::FuzzResult whole =
         test::fuzz_image(Input(seed.bytes.begin(), seed.bytes.end()), seed.extension);
     EXPECT_EQ(whole.fault, "") << seed.extension;
     EXPECT_TRUE(whole.accepted) << seed.extension;
     const auto read = [&](const Input& bytes) { return test::fuzz_image(bytes, seed.extension); };
-    EXPECT_GT(accepted_of(seed.bytes, read), 5) << seed.extension;
+    EXPECT_GT(accepted_of(seed.bytes, read, 200), 5) << seed.extension;
   }
 }
 
 TEST(DamagedImages, ArePackedOrRefused) {
+  const test::IgnoreLeaks readers;  // OpenImageIO never frees the texts of its errors
   for (const Seed& seed : images()) {
     if (seed.extension == std::string("exr") || seed.extension == std::string("hdr")) continue;
     const auto pack = [&](const Input& bytes) { return test::fuzz_sprites(bytes, seed.extension); };
-    EXPECT_GT(accepted_of(seed.bytes, pack), 5) << seed.extension;
+    EXPECT_GT(accepted_of(seed.bytes, pack, 100), 5) << seed.extension;
   }
 }
 
