@@ -326,20 +326,6 @@ TEST(Camera, LooksAndTurnsWhereTheViewIsVertical) {
   }
 }
 
-TEST(StartCamera, IsWhereTheFileSays) {
-  ViewScene hall = *make_view_scene(room(), {});
-  hall.origin = {100, 0, 0};
-  hall.start = FileView{{101, 2, 3}, {0, 0.6, 0.8}};
-  const Camera camera = start_camera(hall, {0, 1, 0}, 75);
-  EXPECT_EQ(camera.eye, (Vec3d{1, 2, 3}));
-  const double reach = camera.target.z - camera.eye.z;
-  EXPECT_GT(reach, 0);
-  EXPECT_NEAR((camera.target.y - camera.eye.y) / reach, 0.75, 1e-12);
-  EXPECT_EQ(camera.target.x, 1);
-  EXPECT_EQ(camera.up, (Vec3d{0, 1, 0}));
-  EXPECT_EQ(camera.fov_degrees, 75);
-}
-
 TEST(StartCamera, StandsInARoomAndBeforeAThing) {
   const auto inside = [](const ViewScene& v, const Vec3d& p) {
     const Box3& b = v.bounds;
