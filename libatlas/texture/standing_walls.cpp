@@ -1,5 +1,6 @@
 #include "libatlas/texture/standing_walls.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <numeric>
