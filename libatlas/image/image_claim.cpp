@@ -12,7 +12,9 @@ namespace {
 
 using Bytes = std::span<const std::uint8_t>;
 
-constexpr std::string_view kJpeg = "\xff\xd8", kGif = "GIF8", kCodeStream = "\xff\x4f\xff\x51";
+// Readers of GIF look at no more of the signature than this.
+constexpr std::string_view kJpeg = "\xff\xd8", kGif = "GIF", kCodeStream = "\xff\x4f\xff\x51",
+                           kExr = "\x76\x2f\x31\x01";
 constexpr double kHarmlessBytes = 64.0 * (1 << 20);
 
 std::int64_t big_endian(Bytes bytes, std::size_t at, int count) {
@@ -72,7 +74,8 @@ std::string size_text(double bytes) {
 }  // namespace
 
 bool takes_memory_to_open(Bytes head) {
-  return begins_with(head, kJpeg) || begins_with(head, kGif) || is_jpeg2000(head);
+  return begins_with(head, kJpeg) || begins_with(head, kGif) || is_jpeg2000(head) ||
+         begins_with(head, kExr);
 }
 
 std::optional<ImageClaim> claim_of(Bytes head) {
@@ -80,6 +83,41 @@ std::optional<ImageClaim> claim_of(Bytes head) {
   if (begins_with(head, kGif)) return gif_claim(head);
   if (is_jpeg2000(head)) return jpeg2000_claim(head);
   return {};
+}
+
+// After the file's header of 14 bytes follows another that begins with its own size. In all but the
+// oldest, of 12 bytes, byte 14 states the bits of a texel, and byte 16 the compression.
+bool bmp_lacks_palette(Bytes head) {
+  constexpr std::uint8_t kOldest = 12, kRuns8 = 1, kRuns4 = 2, kMostPaletteBits = 8;
+  if (!begins_with(head, "BM") || head.size() < 34 || head[14] == kOldest) return false;
+  const std::uint8_t bits = head[28], compression = head[30];
+  return (compression == kRuns8 || compression == kRuns4) && bits > kMostPaletteBits;
+}
+
+// A header is a list of attributes, each of a name and a type that end in 0, a length of four bytes
+// and the value. An empty name ends it; in files of several parts, the next header follows.
+bool exr_overclaims(Bytes head, std::uint64_t file_bytes) {
+  constexpr std::size_t kFirst = 8, kFlags = 5;
+  constexpr std::uint8_t kSeveralParts = 0x10;
+  if (!begins_with(head, kExr) || head.size() <= kFirst) return false;
+  const bool several = head[kFlags] & kSeveralParts;
+  for (std::size_t at = kFirst; at < head.size();) {
+    if (head[at] == 0) {
+      if (!several || ++at >= head.size() || head[at] == 0) return false;
+      continue;
+    }
+    for (int text = 0; text < 2; ++text) {
+      while (at < head.size() && head[at] != 0) ++at;
+      ++at;
+    }
+    if (at + 4 > head.size()) return false;
+    std::uint32_t length = 0;
+    for (std::size_t k = 0; k < 4; ++k) length |= std::uint32_t{head[at + k]} << (8 * k);
+    at += 4;
+    if (length > file_bytes - std::min<std::uint64_t>(at, file_bytes)) return true;
+    at += length;
+  }
+  return false;
 }
 
 Status check_claim(const ImageClaim& claim, std::uint64_t file_bytes, const std::string& name) {

@@ -28,13 +28,22 @@ constexpr double kPackedByte = 1032.0 * 8 * 4;
 // The same in formats that store an area of one colour in almost no space.
 constexpr double kFlatByte = 1 << 20;
 
-// Returns whether OpenImageIO allocates the image's memory already when it opens a file of this
-// format (JPEG, GIF and JPEG-2000), so that the size must be found before. `head` holds the first
-// 16 bytes of the file.
+// Returns whether OpenImageIO allocates memory already when it opens a file of this format: the
+// image's (JPEG, GIF and JPEG-2000) or that of attributes (OpenEXR). What the file claims must be
+// found before. `head` holds the first
+// 64 bytes of the file.
 bool takes_memory_to_open(std::span<const std::uint8_t> head);
 
 // Returns the size that such a file claims, or nothing if `head`, its first bytes, ends before it.
 std::optional<ImageClaim> claim_of(std::span<const std::uint8_t> head);
+
+// Returns whether a BMP file states runs of palette entries, but has colours instead of a palette.
+// OpenImageIO 2.4 reads outside its memory then. `head` holds the first 64 bytes of the file.
+bool bmp_lacks_palette(std::span<const std::uint8_t> head);
+
+// Returns whether an attribute in the header of an OpenEXR file claims more bytes than follow in
+// the file, for which OpenEXR takes memory, up to 2 GiB. `head` holds the beginning of the file.
+bool exr_overclaims(std::span<const std::uint8_t> head, std::uint64_t file_bytes);
 
 // Refuses images that claim to be larger than kLargestImageBytes (unsupported), and those that
 // claim more than 64 MiB and more than a file of `file_bytes` can hold, or a side or channel count

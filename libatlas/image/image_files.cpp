@@ -9,6 +9,7 @@
 #include <cmath>
 #include <cstdio>
 #include <cstring>
+#include <exception>
 #include <fstream>
 #include <memory>
 #include <new>
@@ -43,8 +44,10 @@ OIIO::stride_t row_bytes(const Image<T>& image) {
   return OIIO::stride_t(sizeof(T)) * image.width * image.channels;
 }
 
+// Readers give several reasons, a line each, of which the first says what is wrong.
 Status failure(const std::filesystem::path& path, const char* what, const std::string& why) {
-  return {ErrorCode::io, fmt::format("{}: {}: {}", path.string(), what, why)};
+  return {ErrorCode::io,
+          fmt::format("{}: {}: {}", path.string(), what, why.substr(0, why.find('\n')))};
 }
 
 // An image that OpenImageIO reads, and its name for messages. `file` is null if OpenImageIO opens
@@ -90,7 +93,7 @@ Result<Image<T>> read_pixels(const Source& source) {
       input.read_image(0, 0, 0, spec.nchannels, type_of<T>(), top_row, OIIO::AutoStride, -stride);
   const std::string complaint = input.geterror();
   if (!read || damaged(input, complaint)) {
-    return failure(source.name, "image is damaged", complaint.substr(0, complaint.find('\n')));
+    return failure(source.name, "image is damaged", complaint);
   }
   return image;
 }
@@ -101,27 +104,30 @@ OIIO::ImageSpec input_settings() {
   return config;
 }
 
-// Calls `reader`, and returns an error if memory runs out: some readers allocate memory before they
-// can be asked how much.
+// Calls `reader`, and returns an error if it throws. Some readers allocate memory before they can
+// be asked how much, more than there is or even than a vector can have.
 template <class Function>
 auto within_memory(const std::string& name, const Function& reader) -> decltype(reader()) {
   try {
     return reader();
   } catch (const std::bad_alloc&) {
     return Status(ErrorCode::io, name + ": not enough memory to read it: make the image smaller");
+  } catch (const std::exception& thrown) {
+    return failure(name, "image is damaged", thrown.what());
   }
 }
 
 // Reads as much of a file as contains its size, whatever comments precede that: up to 16 MiB. For
-// formats that take no memory to open, only the first 16 bytes are read.
+// formats that take no memory to open, only the first 64 bytes are read.
 std::vector<std::uint8_t> head_of(const std::filesystem::path& path, std::uint64_t bytes) {
   constexpr std::uint64_t kEnough = 1 << 24;
-  std::vector<std::uint8_t> head(16);
+  std::vector<std::uint8_t> head(64);
   std::ifstream file(path, std::ios::binary);
-  file.read(reinterpret_cast<char*>(head.data()), 16);
+  file.read(reinterpret_cast<char*>(head.data()), std::streamsize(head.size()));
   head.resize(std::size_t(file.gcount()));
   if (!takes_memory_to_open(head)) return head;
   head.resize(std::size_t(std::min(bytes, kEnough)));
+  file.clear();  // of a file shorter than that
   file.seekg(0);
   file.read(reinterpret_cast<char*>(head.data()), std::streamsize(head.size()));
   head.resize(std::size_t(file.gcount()));
@@ -240,7 +246,12 @@ Result<Source> open_file(const std::filesystem::path& path) {
   std::error_code error;
   Source source{nullptr, nullptr, std::filesystem::file_size(path, error), path.string()};
   if (error) return failure(path, "cannot be read as an image", error.message());
-  if (const auto claim = claim_of(head_of(path, source.bytes))) {
+  const std::vector<std::uint8_t> head = head_of(path, source.bytes);
+  if (bmp_lacks_palette(head))
+    return failure(path, "image is damaged", "it is compressed, but has no palette (save it anew)");
+  if (exr_overclaims(head, source.bytes))
+    return failure(path, "image is damaged", "its header claims more than it holds (save it anew)");
+  if (const auto claim = claim_of(head)) {
     if (Status s = check_claim(*claim, source.bytes, source.name); !s.ok()) return s;
   }
   OIIO::ImageSpec config = input_settings();

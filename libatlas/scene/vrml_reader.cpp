@@ -75,9 +75,11 @@ class VrmlParser : VrmlScanner {
 
  private:
   Status error(const std::string& what) const {
+    const bool remedied = what.ends_with(')');
     return {ErrorCode::bad_input,
-            fmt::format("{}:{}: {} (not all of VRML97 is read; give the scene in another format)",
-                        builder_.file, line(), what)};
+            fmt::format(
+                "{}:{}: {}{}", builder_.file, line(), what,
+                remedied ? "" : " (not all of VRML97 is read; give the scene in another format)")};
   }
 
   Status all_hidden() const {

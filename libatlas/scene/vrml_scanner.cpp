@@ -12,8 +12,8 @@ namespace {
 
 // Limits on the text that USE repeats, of which a file may have the larger. A few nested USE can
 // stand for more nodes than there are bytes in any memory; a scene takes up to eight times the
-// bytes of its text.
-constexpr std::ptrdiff_t kMostRepeated = std::ptrdiff_t{1} << 27, kMostRepetitions = 64;
+// bytes of its text, so the first is some ten gigabytes, as for the instances of glTF.
+constexpr double kMostRepeated = double(1 << 30), kMostRepetitions = 64;
 
 }  // namespace
 
@@ -112,7 +112,7 @@ void VrmlScanner::skip_brackets() {
     if (token.empty()) fail("the file ends inside a node");
     open += token == "{" || token == "[" ? 1 : token == "}" || token == "]" ? -1 : 0;
   }
-  if (uses_ > 0) count_repeated(at_ - begin);
+  if (uses_ > 0) count_repeated(double(at_ - begin));
 }
 
 void VrmlScanner::skip_node(std::string_view token) {
@@ -135,31 +135,63 @@ std::string_view VrmlScanner::type_of(std::string_view token, std::string_view& 
   return token;
 }
 
+// Text counts once for each time that it is read, so that too much is refused before any of it is.
+// A USE within its own DEF counts nothing: it is refused when it is read.
 void VrmlScanner::find_definitions() {
+  struct Open {
+    std::vector<Definition>* list;
+    std::size_t number;
+    int depth;        // of brackets around it
+    double repeated;  // bytes that USE repeats within
+  };
+  std::vector<Open> open;
+  int depth = 0;
   const char* before = at_;
   at_ = begin_;
   for (std::string_view token = next(); !token.empty(); token = next()) {
-    if (token == "DEF") definitions_[next()].push_back(token.data());
+    if (token == "DEF") {
+      std::vector<Definition>& list = definitions_[next()];
+      list.push_back({token.data(), 0});
+      open.push_back({&list, list.size() - 1, depth, 0});
+    } else if (token == "USE") {
+      const auto found = definitions_.find(next());
+      if (found != definitions_.end() && !open.empty())
+        open.back().repeated += found->second.back().bytes;
+    } else if (token == "{") {
+      ++depth;
+    } else if (token == "}") {
+      for (--depth; !open.empty() && depth <= open.back().depth; open.pop_back()) {
+        Definition& definition = (*open.back().list)[open.back().number];
+        definition.bytes = double(at_ - definition.place) + open.back().repeated;
+        if (open.size() > 1) open[open.size() - 2].repeated += open.back().repeated;
+      }
+    }
   }
   at_ = before;
   definitions_found_ = true;
 }
 
-const char* VrmlScanner::definition_of(std::string_view name, const char* use) {
+const VrmlScanner::Definition& VrmlScanner::definition_of(std::string_view name, const char* use) {
   if (!definitions_found_) find_definitions();
   const auto found = definitions_.find(name);
   if (found != definitions_.end()) {
     const auto& places = found->second;
-    const auto after = std::lower_bound(places.begin(), places.end(), use);
+    const auto after =
+        std::lower_bound(places.begin(), places.end(), use,
+                         [](const Definition& d, const char* place) { return d.place < place; });
     if (after != places.begin()) return after[-1];
   }
   fail(fmt::format("USE of '{}', which no DEF before it names", start_of(name)));
 }
 
-void VrmlScanner::count_repeated(std::ptrdiff_t bytes) {
+void VrmlScanner::count_repeated(double bytes) {
   repeated_ += bytes;
-  if (repeated_ > std::max(kMostRepeated, kMostRepetitions * (end_ - begin_)))
-    fail("USE repeats more nodes than can be read");
+  const double most = std::max(kMostRepeated, kMostRepetitions * double(end_ - begin_));
+  if (repeated_ > most)
+    fail(
+        fmt::format("USE repeats more than the {:.0f} MiB of text that are read of this file (make "
+                    "several files of it, or show less by USE)",
+                    most / (1 << 20)));
   if (context_.cancelled()) throw MalformedVrml();
 }
 

@@ -72,12 +72,13 @@ class VrmlScanner {
       return read(token, name);
     }
     const std::string_view name = next();
+    const Definition& definition = definition_of(name, token.data());
+    if (uses_ == 0) count_repeated(definition.bytes);  // those of the USE within are part of it
     const char* after = at_;
-    const char* begin = at_ = definition_of(name, token.data());
+    at_ = definition.place;
     ++uses_;
     read_node(next(), read);
     --uses_;
-    count_repeated(at_ - begin);
     at_ = after;
   }
   void skip_node(std::string_view token);
@@ -97,19 +98,23 @@ class VrmlScanner {
   bool number(double& value);
   // Returns the type of the node that begins with `token`, and the name that DEF gives it.
   std::string_view type_of(std::string_view token, std::string_view& name);
-  // Returns where the last DEF of the name before `use` stands.
-  const char* definition_of(std::string_view name, const char* use);
+  struct Definition {
+    const char* place;  // after DEF
+    double bytes;       // of its node's text, with all that USE repeats within
+  };
+  // Returns the last DEF of the name before `use`.
+  const Definition& definition_of(std::string_view name, const char* use);
   void find_definitions();
-  void count_repeated(std::ptrdiff_t bytes);
+  void count_repeated(double bytes);
 
   const char *begin_, *at_, *end_;
   const Context& context_;
   std::string what_;
   // Where each name is defined, in the order of the file; filled by the first USE.
-  std::map<std::string_view, std::vector<const char*>> definitions_;
+  std::map<std::string_view, std::vector<Definition>> definitions_;
   bool definitions_found_ = false;
-  int uses_ = 0;                 // how many USE are being followed, one within the other
-  std::ptrdiff_t repeated_ = 0;  // bytes that USE has made the scanner pass once more
+  int uses_ = 0;         // how many USE are being followed, one within the other
+  double repeated_ = 0;  // bytes that USE makes the scanner pass once more
 };
 
 }  // namespace atlas

@@ -88,7 +88,12 @@ TEST(ParallelFor, ManyLoopsTakeNoMoreMemoryThanAFew) {
   loops(100);
   const std::int64_t before = peak_memory();
   loops(6000);
-  EXPECT_LT(peak_memory() - before, 8 << 20);
+#if defined(__SANITIZE_THREAD__)
+  constexpr int kRoom = 32 << 20;  // some 17 MB are the sanitizer's memory of what threads did
+#else
+  constexpr int kRoom = 8 << 20;
+#endif
+  EXPECT_LT(peak_memory() - before, kRoom);
 }
 
 TEST(ParallelFor, KnowsHowManyThreadsAreAskedFor) {

@@ -3,11 +3,14 @@
 
 #include <iterator>
 #include <nlohmann/json.hpp>
+#include <numeric>
 #include <random>
 #include <string>
 #include <vector>
 
+#include "libatlas/image/image_io.h"
 #include "tests/fuzz/targets.h"
+#include "tests/image/file_bytes.h"
 #include "tests/scene/gltf_maker.h"
 
 namespace atlas {
@@ -284,6 +287,52 @@ TEST(DamagedLists, NumbersBeyondAllBoundsAreRefusedClearly) {
   const test::FuzzResult result = test::fuzz_rects(Input(text.begin(), text.end()), "json");
   EXPECT_EQ(result.fault, "");
   EXPECT_FALSE(result.accepted);
+}
+
+// Images of 3 x 2 texels, uncompressed but for those that the library writes itself.
+std::vector<Seed> images() {
+  const test::TempFolder folder;
+  Image8 bytes(3, 2, 4);
+  std::iota(bytes.texels.begin(), bytes.texels.end(), std::uint8_t{70});
+  ImageF floats(3, 2, 3);
+  std::iota(floats.texels.begin(), floats.texels.end(), 0.5f);
+  EXPECT_TRUE(write_png(folder.path() / "a.png", bytes, {}).ok());
+  EXPECT_TRUE(write_exr(folder.path() / "a.exr", floats).ok());
+  const std::string texels(3 * 2 * 3, '\x55'), row(3 * 3, '\x55'), none(4, '\0');
+  using test::little;
+  const std::string bmp = "BM" + little(78, 4) + none + little(54, 4) + little(40, 4) +
+                          little(3, 4) + little(2, 4) + little(1, 2) + little(24, 2) + none +
+                          little(24, 4) + std::string(16, '\0') + row + std::string(3, '\0') + row +
+                          std::string(3, '\0');
+  const std::string tga = std::string("\0\0\2\0\0\0\0\0\0\0\0\0", 12) + little(3, 2) +
+                          little(2, 2) + std::string("\x18\0", 2) + texels;
+  const std::string gif = "GIF89a" + little(1, 2) + little(1, 2) +
+                          std::string("\x80\0\0\1\2\3\4\5\6,\0\0\0\0\1\0\1\0\0\2\2\x44\1\0;", 27);
+  return {{"png", test::TempFolder::read(folder.path() / "a.png")},
+          {"exr", test::TempFolder::read(folder.path() / "a.exr")},
+          {"hdr", "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 2 +X 3\n" + std::string(24, '\x80')},
+          {"bmp", bmp},
+          {"tga", tga},
+          {"gif", gif}};
+}
+
+TEST(DamagedImages, AreReadOrRefused) {
+  for (const Seed& seed : images()) {
+    const test::FuzzResult whole =
+        test::fuzz_image(Input(seed.bytes.begin(), seed.bytes.end()), seed.extension);
+    EXPECT_EQ(whole.fault, "") << seed.extension;
+    EXPECT_TRUE(whole.accepted) << seed.extension;
+    const auto read = [&](const Input& bytes) { return test::fuzz_image(bytes, seed.extension); };
+    EXPECT_GT(accepted_of(seed.bytes, read), 5) << seed.extension;
+  }
+}
+
+TEST(DamagedImages, ArePackedOrRefused) {
+  for (const Seed& seed : images()) {
+    if (seed.extension == std::string("exr") || seed.extension == std::string("hdr")) continue;
+    const auto pack = [&](const Input& bytes) { return test::fuzz_sprites(bytes, seed.extension); };
+    EXPECT_GT(accepted_of(seed.bytes, pack), 5) << seed.extension;
+  }
 }
 
 TEST(MadeUpMeshes, AreUnwrapped) {

@@ -5,6 +5,7 @@ namespace atlas::test {
 namespace {
 
 constexpr const char* kTargets[] = {"world.gltf", "world.glb", "world.obj", "world.wrl"};
+constexpr const char* kPacked = "world.wrz";
 
 ExportOptions options_of(unsigned choice, const FuzzFolder& folder) {
   ExportOptions options;
@@ -15,6 +16,12 @@ ExportOptions options_of(unsigned choice, const FuzzFolder& folder) {
   if (choice & 16) options.charts.cone_degrees = 50;
   options.atlases = choice & 32 ? 1 : 3;
   options.atlas_size = 64;
+  if ((choice & 3) == 3 && choice & 64) options.target = folder.path() / kPacked;
+  options.plain_pages = choice & 128 ? 3 : 1;
+  options.square_plain_page = choice & 256;
+  options.charts.keep_uv_charts = choice & 512;
+  options.charts.split_at_materials = choice & 1024;
+  options.exr = choice & 2048;
   return options;
 }
 

@@ -97,6 +97,12 @@ struct Hostile {
   std::string name, bytes;
 };
 
+std::string gif(const std::string& signature) {
+  const std::string side = little(60000, 2) + little(60000, 2);
+  return signature + side + std::string("\x80\0\0", 3) + std::string(6, '\0') + ',' +
+         std::string(4, '\0') + side + std::string("\0\2\2\x4c\1\0;", 7);
+}
+
 std::vector<Hostile> hostile_files() {
   const std::string jpg = jpeg(60000, '\xc2');
   return {{"plain.png", png(60000, 60000, kRgb, "")},
@@ -105,9 +111,8 @@ std::vector<Hostile> hostile_files() {
           {"baseline.jpg", jpeg(60000, '\xc0')},
           {"progressive.jpg", jpg},
           {"exif.jpg", jpg.substr(0, 2) + exif(200'000) + jpg.substr(2)},
-          {"a.gif", "GIF89a" + little(60000, 2) + little(60000, 2) + std::string("\x80\0\0", 3) +
-                        std::string(6, '\0') + ',' + std::string(4, '\0') + little(60000, 2) +
-                        little(60000, 2) + std::string("\0\2\2\x4c\1\0;", 7)},
+          {"a.gif", gif("GIF89a")},
+          {"b.gif", gif("GIF70x")},
           {"strips.tif", tiff(60000, 1)},
           {"deflated.tif", tiff(60000, 8)},
           {"a.hdr", "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 60000 +X 60000\n\2\2"},
@@ -188,6 +193,66 @@ TEST(HostileImage, TheLimitIsThatOfTheValuesInMemory) {
   EXPECT_EQ(status.code(), ErrorCode::unsupported);
   EXPECT_NE(status.message().find("(4.0 GiB), and at most 4.0 GiB are read"), std::string::npos)
       << status.message();
+}
+
+std::string bmp(std::uint32_t bits, std::uint32_t compression, const std::string& rest) {
+  return "BM" + little(54 + std::uint32_t(rest.size()), 4) + little(0, 4) + little(54, 4) +
+         little(40, 4) + little(2, 4) + little(1, 4) + little(1, 2) + little(bits, 2) +
+         little(compression, 4) + std::string(20, '\0') + rest;
+}
+
+// OpenImageIO looked for palette entries where there was no palette, and crashed.
+TEST(HostileImage, RunsOfABitmapNeedAPalette) {
+  const TempFolder folder;
+  const std::string runs("\2\5\0\1", 4), palette(256 * 4, '\x30');
+  for (const std::uint32_t bits : {16, 24, 32})
+    for (const std::uint32_t compression : {1, 2}) {
+      const auto read = read_image8(folder.write("a.bmp", bmp(bits, compression, runs)));
+      ASSERT_FALSE(read.ok());
+      EXPECT_NE(read.status().message().find("a.bmp: image is damaged: it is compressed, but has "
+                                             "no palette (save it anew)"),
+                std::string::npos)
+          << read.status().message();
+    }
+  const auto whole = read_image8(folder.write("a.bmp", bmp(8, 1, palette + runs)));
+  ASSERT_TRUE(whole.ok()) << whole.status().message();
+  EXPECT_EQ(whole->width, 2);
+  EXPECT_EQ(*whole->at(1, 0), 0x30);
+}
+
+// A file of several parts, where this is found in the second. OpenEXR took a gigabyte.
+TEST(HostileImage, NoMemoryForAttributesOfHalfAFile) {
+  const TempFolder folder;
+  const auto attribute = [](std::uint32_t length, const std::string& value) {
+    return std::string("a\0opaque\0", 9) + little(length, 4) + value;
+  };
+  const std::string start("\x76\x2f\x31\1\2\x10\0\0", 8), part = attribute(3, "abc") + '\0';
+  for (const std::uint32_t length : {1u << 30, ~0u}) {
+    const auto path = folder.write("a.exr", start + part + attribute(length, "abc"));
+    const auto read = read_image_float(path);
+    ASSERT_FALSE(read.ok());
+    EXPECT_EQ(read.status().message(), path.string() +
+                                           ": image is damaged: its header claims more "
+                                           "than it holds (save it anew)");
+  }
+  EXPECT_LT(peak_memory(), std::int64_t{800} << 20);
+  const std::string whole = start + part + part + '\0';
+  const auto judged = [&](std::size_t bytes) {
+    const std::string head = whole.substr(0, bytes);
+    return exr_overclaims({reinterpret_cast<const std::uint8_t*>(head.data()), bytes}, bytes);
+  };
+  EXPECT_FALSE(judged(whole.size()));
+  EXPECT_TRUE(judged(8 + 9 + 4 + 2));  // within the first value
+  EXPECT_FALSE(judged(8 + 5));         // within a type: nothing is claimed yet
+}
+
+// OpenImageIO gives two lines for it.
+TEST(HostileImage, ErrorsAreOneLine) {
+  const TempFolder folder;
+  const std::string whole = png(1, 1, kRgb, std::string(4, '\0'));
+  const auto read = read_image8(folder.write("a.png", whole.substr(0, 33) + big(9, 4) + "oFFs"));
+  ASSERT_FALSE(read.ok());
+  EXPECT_EQ(read.status().message().find('\n'), std::string::npos) << read.status().message();
 }
 
 // For these files, the readers only gave a message, and the missing rest was grey or black.
