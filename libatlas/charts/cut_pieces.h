@@ -9,7 +9,7 @@
 namespace atlas {
 
 struct CutCharts {
-  std::vector<FlatChart> charts;  // ordered by first triangle
+  std::vector<FlatChart> charts;    // ordered by first triangle
   std::uint64_t split_charts = 0;   // charts that failed and were divided on the way to these
   std::uint64_t copied_pieces = 0;  // pieces that took the charts of another piece
   ChartSet::Timing timing;          // segmentation_cpu, and the parts of both sums

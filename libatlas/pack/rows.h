@@ -18,9 +18,10 @@ struct RowPlan {
   double density = 0;      // the share of the plane that such rows cover, without gutters
 };
 
-// Returns plans for the groups of at least 24 copies. For each, the densest rows are chosen among 24
-// directions and those of the longest edges of the convex hull: the charts then form a lattice or a
-// double lattice (Kuperberg and Kuperberg 1990). May be incomplete if the context is cancelled.
+// Returns plans for the groups of at least 24 copies. For each, the densest rows are chosen among
+// 24 directions and those of the longest edges of the convex hull: the charts then form a lattice
+// or a double lattice (Kuperberg and Kuperberg 1990). May be incomplete if the context is
+// cancelled.
 std::vector<RowPlan> find_rows(std::span<const ChartOutline> outlines, const Context& context);
 
 // Lays the charts in rows that are no longer than `length` cells. Every chart lies as close to
