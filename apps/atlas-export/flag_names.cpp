@@ -7,7 +7,7 @@ namespace atlas::app {
 namespace {
 
 using FlagName = std::pair<std::string_view, std::string_view>;
-constexpr std::array<FlagName, 26> kFlagNames{{
+constexpr std::array<FlagName, 27> kFlagNames{{
     {"ExportOptions::atlases", "--atlases"},
     {"ExportOptions::plain_pages", "--atlases"},
     {"ExportOptions::atlas_size", "--atlas-size"},
@@ -30,6 +30,7 @@ constexpr std::array<FlagName, 26> kFlagNames{{
     {"ChartOptions::split_at_materials", "--across-materials"},
     {"ChartOptions::keep_uv_charts", "--keep-uv-charts"},
     {"ChartOptions::uv_aspect", "--uv-aspect"},
+    {"ToneOptions::op", "--tone"},
     {"ToneOptions::white", "--white"},
     {"ToneOptions::exposure_stops", "--exposure"},
     {"ReadOptions::metres_per_unit", "--unit"},

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <string>
 #include <utility>
 
@@ -22,6 +23,23 @@ Status check_vertices(const MeshView& mesh, const ChartSet& charts, std::string_
   if (at == charts.uv_vertex.end()) return {};
   return bad_input(
       fmt::format("{}: uv_vertex {} of {} positions", who, *at, mesh.positions.size()));
+}
+
+// Checks the arrays of the mesh that have one value per triangle, as make_charts() does.
+Status check_values(const MeshView& mesh, std::string_view who) {
+  const std::size_t triangles = mesh.indices.size() / 3;
+  for (const auto& [name, count] : {std::pair("materials", mesh.materials.size()),
+                                    std::pair("densities", mesh.density.size())}) {
+    if (count != 0 && count != triangles)
+      return bad_input(fmt::format("{}: {} {} for {} triangles (none, or 1 a triangle)", who, count,
+                                   name, triangles));
+  }
+  for (std::size_t t = 0; t < mesh.density.size(); ++t) {
+    if (!(mesh.density[t] > 0) || !std::isfinite(mesh.density[t]))
+      return bad_input(fmt::format("{}: triangle {}: density {} (must be above 0 and finite)", who,
+                                   t, mesh.density[t]));
+  }
+  return {};
 }
 
 }  // namespace
@@ -59,6 +77,7 @@ Status check_chart(const ChartSet& charts, std::size_t id, std::string_view who)
 Status check_chart_set(const MeshView& mesh, const ChartSet& charts, std::string_view who) {
   if (Status s = check_chart_arrays(charts, mesh.indices.size(), who); !s.ok()) return s;
   if (Status s = check_vertices(mesh, charts, who); !s.ok()) return s;
+  if (Status s = check_values(mesh, who); !s.ok()) return s;
   std::size_t listed = 0;
   for (const Chart& chart : charts.charts) listed += chart.triangle_count;
   if (listed > charts.chart_triangles.size())

@@ -18,8 +18,9 @@ Status check_chart_arrays(const ChartSet& charts, std::size_t indices, std::stri
 // chart's range. `chart` is below charts.charts.size(). Linear in the chart's triangles.
 Status check_chart(const ChartSet& charts, std::size_t chart, std::string_view who);
 
-// Whether a set as a whole is usable with the mesh: its arrays, its charts, and the vertices of its
-// uvs. Neither triangle_chart nor flipped_triangles is looked at. Linear.
+// Whether a set as a whole is usable with the mesh: its arrays, its charts, the vertices of its
+// uvs, and the mesh's materials and densities. Neither triangle_chart nor flipped_triangles is
+// looked at. Linear.
 Status check_chart_set(const MeshView& mesh, const ChartSet& charts, std::string_view who);
 
 }  // namespace atlas

@@ -43,25 +43,30 @@ class BestCharts {
  public:
   explicit BestCharts(const Topology& topology) : topology_(topology) {}
 
-  void take(const Partition& partition, std::vector<FlatChart> charts) {
-    const std::vector<Cost> made = costs(topology_, partition, charts);
-    std::vector<bool> better(made.size(), least_.empty());
-    for (std::size_t piece = 0; piece < least_.size(); ++piece) {
-      better[piece] = made[piece] < least_[piece];
-      if (better[piece]) least_[piece] = made[piece];
+  void take(const Partition& partition, FlattenResult flat) {
+    const std::vector<Cost> made = costs(topology_, partition, flat.charts);
+    const bool first = least_.empty();
+    least_.resize(made.size());
+    best_.splits.resize(made.size());
+    std::vector<bool> better(made.size());
+    for (std::size_t piece = 0; piece < made.size(); ++piece) {
+      better[piece] = first || made[piece] < least_[piece];
+      if (!better[piece]) continue;
+      least_[piece] = made[piece];
+      best_.splits[piece] = flat.splits[piece];
     }
-    if (least_.empty()) least_ = made;
     const auto changes = [&](const FlatChart& chart) { return better[chart.piece(topology_)]; };
-    std::erase_if(charts_, changes);
-    std::copy_if(std::move_iterator(charts.begin()), std::move_iterator(charts.end()),
-                 std::back_inserter(charts_), changes);
+    std::erase_if(best_.charts, changes);
+    std::copy_if(std::move_iterator(flat.charts.begin()), std::move_iterator(flat.charts.end()),
+                 std::back_inserter(best_.charts), changes);
   }
 
-  std::vector<FlatChart> charts() && { return std::move(charts_); }
+  // The charts are not in order.
+  FlattenResult result() && { return std::move(best_); }
 
  private:
   const Topology& topology_;
-  std::vector<FlatChart> charts_;
+  FlattenResult best_;
   std::vector<Cost> least_;  // one per piece
 };
 
@@ -69,6 +74,7 @@ class BestCharts {
 CutCharts cut_mesh(const FlattenInput& mesh, const Context& context) {
   const int attempts = mesh.options.preset == ChartPreset::best ? kBestAttempts : 1;
   CutCharts out;
+  FlattenResult chosen;
   BestCharts best(mesh.topology);
   for (int i = 0; i < attempts; ++i) {
     const double start = own_cpu_seconds();
@@ -82,18 +88,19 @@ CutCharts cut_mesh(const FlattenInput& mesh, const Context& context) {
                        segmentation.partition, context);
     add_parts(segmentation.timing, out.timing);
     add_parts(flat.timing, out.timing);
-    out.split_charts += flat.split_charts;
     if (context.cancelled()) return out;
     if (attempts == 1) {
-      out.charts = std::move(flat.charts);
+      chosen = std::move(flat);
     } else {
-      best.take(segmentation.partition, std::move(flat.charts));
+      best.take(segmentation.partition, std::move(flat));
     }
   }
   if (attempts > 1) {
-    out.charts = std::move(best).charts();
-    sort_by_triangle(out.charts);
+    chosen = std::move(best).result();
+    sort_by_triangle(chosen.charts);
   }
+  out.split_charts = chosen.split_charts();
+  out.charts = std::move(chosen.charts);
   return out;
 }
 

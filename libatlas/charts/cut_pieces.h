@@ -9,9 +9,8 @@
 namespace atlas {
 
 struct CutCharts {
-  std::vector<FlatChart> charts;  // ordered by first triangle
-  // Charts that failed and were divided, in all attempts.
-  std::uint64_t split_charts = 0;
+  std::vector<FlatChart> charts;    // ordered by first triangle
+  std::uint64_t split_charts = 0;   // charts that failed and were divided on the way to these
   std::uint64_t copied_pieces = 0;  // pieces that took the charts of another piece
   ChartSet::Timing timing;          // segmentation_cpu, and the parts of both sums
 };

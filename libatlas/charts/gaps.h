@@ -30,7 +30,8 @@ struct GapLimits {
 // Measures how much of the charts' borders is closer than the clearance (see GapLimits) to another
 // part of the same chart, although both are far apart on the surface: more than three clearances.
 // Changes nothing. Errors: bad_input (not one clearance per chart, or one below 0 or not a number;
-// charts of another mesh, or whose ranges and indices contradict each other); cancelled.
+// charts of another mesh, or whose ranges and indices contradict each other; materials or densities
+// that make_charts refuses); cancelled.
 Result<GapReport> measure_gaps(const MeshView& mesh, std::span<const double> clearance,
                                const ChartSet& charts, const Context& context);
 

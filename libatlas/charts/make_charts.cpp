@@ -240,6 +240,8 @@ class Assembler {
     for (std::uint32_t t = 0; t < set_.triangle_chart.size(); ++t) {
       set_.chart_triangles[next[set_.triangle_chart[t]]++] = t;
     }
+    for (Chart& chart : set_.charts)
+      chart.material = material(set_.chart_triangles[chart.first_triangle]);
   }
 
   const MeshView& mesh_;

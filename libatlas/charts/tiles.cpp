@@ -293,6 +293,7 @@ class Rebuilder {
       }
     }
     std::sort(fresh_.chart_triangles.begin() + std::ptrdiff_t(first), fresh_.chart_triangles.end());
+    if (!mesh_.materials.empty()) chart.material = mesh_.materials[fresh_.chart_triangles[first]];
     fresh_.charts.push_back(chart);
   }
 

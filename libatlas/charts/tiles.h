@@ -26,8 +26,8 @@ struct TileLimits {
 // measured again, and so is the total. Charts within their limit keep their order; pieces take the
 // place of their parent. Returns how many charts were cut. The result is the same for every thread
 // count. Errors: bad_input (not one limit per chart, or one that is not above 0; charts of another
-// mesh, or whose ranges and indices contradict each other); bad_option (max_stretch); cancelled.
-// The charts are then unchanged.
+// mesh, or whose ranges and indices contradict each other; materials or densities that make_charts
+// refuses); bad_option (max_stretch); cancelled. The charts are then unchanged.
 Result<std::size_t> cut_to_limits(const MeshView& mesh, const TileLimits& limits, ChartSet& charts,
                                   const Context& context);
 

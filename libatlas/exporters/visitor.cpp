@@ -7,6 +7,7 @@
 
 #include "libatlas/core/bounds.h"
 #include "libatlas/core/glm_bridge.h"
+#include "libatlas/core/triangle_distance.h"
 
 namespace atlas {
 namespace {
@@ -18,31 +19,8 @@ constexpr double kInsideShare = 1.0 / 2;    // width per distance to the nearest
 // away from it.
 constexpr double kLeastRoom = 1e-3;
 
-struct Triangle {
-  glm::dvec3 a, b, c;
-};
-
-double distance_to_segment(const glm::dvec3& p, const glm::dvec3& a, const glm::dvec3& b) {
-  const glm::dvec3 along = b - a;
-  const double square = glm::dot(along, along);
-  const double t = square > 0 ? std::clamp(glm::dot(p - a, along) / square, 0.0, 1.0) : 0;
-  return glm::distance(p, a + t * along);
-}
-
-double distance_to(const glm::dvec3& p, const Triangle& t) {
-  const glm::dvec3 normal = glm::cross(t.b - t.a, t.c - t.a);
-  const double square = glm::dot(normal, normal);
-  const auto left_of = [&](const glm::dvec3& from, const glm::dvec3& to) {
-    return glm::dot(glm::cross(to - from, p - from), normal) >= 0;
-  };
-  if (square > 0 && left_of(t.a, t.b) && left_of(t.b, t.c) && left_of(t.c, t.a))
-    return std::abs(glm::dot(p - t.a, normal)) / std::sqrt(square);
-  return std::min({distance_to_segment(p, t.a, t.b), distance_to_segment(p, t.b, t.c),
-                   distance_to_segment(p, t.c, t.a)});
-}
-
 // Returns how far below `p` the triangle's point straight below is; infinite if there is none.
-double drop_to(const glm::dvec3& p, const Triangle& t, const glm::dvec3& up) {
+double drop_to(const glm::dvec3& p, const Triangle3& t, const glm::dvec3& up) {
   const glm::dvec3 corners[3] = {t.a - p, t.b - p, t.c - p};
   double weights[3], sum = 0, height = 0;
   for (int i = 0; i < 3; ++i) {
@@ -63,7 +41,7 @@ void for_triangles(const World& world, const Visit& visit) {
   for (const Page& page : world.pages) {
     const auto corner = [&](std::size_t i) { return to_dvec(world.positions[page.indices[i]]); };
     for (std::size_t k = 0; k < page.indices.size(); k += 3)
-      visit(Triangle{corner(k), corner(k + 1), corner(k + 2)});
+      visit(Triangle3{corner(k), corner(k + 1), corner(k + 2)});
   }
 }
 
@@ -77,7 +55,7 @@ Room room_of(const World& world) {
   const glm::dvec3 eye = to_glm(world.viewpoint.position);
   const glm::dvec3 up = world.up == Up::z ? glm::dvec3(0, 0, 1) : glm::dvec3(0, 1, 0);
   Room room;
-  for_triangles(world, [&](const Triangle& t) {
+  for_triangles(world, [&](const Triangle3& t) {
     room.nearest = std::min(room.nearest, distance_to(eye, t));
     room.floor = std::min(room.floor, drop_to(eye, t, up));
   });
@@ -96,7 +74,7 @@ Visitor visitor_of(const World& world) {
   const glm::dvec3 eye = to_glm(world.viewpoint.position);
   Bounds<glm::dvec3> box;
   double farthest = 0;
-  for_triangles(world, [&](const Triangle& t) {
+  for_triangles(world, [&](const Triangle3& t) {
     for (const glm::dvec3& p : {t.a, t.b, t.c}) {
       box.add(p);
       farthest = std::max(farthest, glm::distance(eye, p));

@@ -13,6 +13,7 @@
 #include "libatlas/pack/fit_result.h"
 #include "libatlas/pack/nest.h"
 #include "libatlas/pack/pairs.h"
+#include "libatlas/pack/rows.h"
 #include "libatlas/pack/shape_check.h"
 
 namespace atlas::pack {
@@ -31,6 +32,9 @@ constexpr std::uint32_t kDirectionsBest = 16;
 // from kNearlyFull on.
 constexpr std::uint32_t kMostLayouts = 4, kMostGiven = 6;  // pages of any shape, of given shape
 constexpr double kNearlyFull = 0.98;
+// Copies of charts are laid in rows if they make up this share of the area. Fewer are of more use
+// in the gaps between others.
+constexpr double kRowsShare = 0.15;
 
 struct ManyLayout {
   double scale = 0, fill = 0;
@@ -49,9 +53,7 @@ class ManyCharts {
       : charts_(charts), options_(options), context_(context) {
     for (const ChartOutline& o : charts.outlines) area_ += o.area;
     const bool any_angle = options.allow_rotation && options.any_angle;
-    if (any_angle) pairs_ = find_pairs(charts.outlines, context);
-    paired_.assign(charts.items.size(), false);
-    for (const ChartPair& p : pairs_) paired_[p.first] = paired_[p.second] = true;
+    find_ways(any_angle);
     const bool best = options.preset == PackPreset::best;
     const std::uint32_t rotations = options.allow_rotation
                                         ? (best && any_angle ? kDirectionsBest : options.rotations)
@@ -72,24 +74,13 @@ class ManyCharts {
     if (bounds.gutters_exceed_pages || !(area_ > 0)) return std::nullopt;
     const double most = std::min(options_.max_scale, bounds.alone);
     const double pages = double(options_.page_size) * options_.page_size * options_.pages;
-    double scale = std::min({most, std::sqrt(kGuess * pages / area_), bounds.with_gutters});
-    double low = 0, high = std::numeric_limits<double>::infinity();  // fits, and does not
+    const double guess = std::min({most, std::sqrt(kGuess * pages / area_), bounds.with_gutters});
     ManyLayout best;
     FitResult result;
-    const std::uint32_t most_layouts = options_.free_aspect ? kMostLayouts : kMostGiven;
-    while (result.packings < most_layouts) {
-      ManyLayout layout = lay_out(scale);
-      if (context_.cancelled() || layout.height == 0) return std::nullopt;
-      const double height = layout.height;
-      const bool fits = height <= side_;
-      context_.report("packing", double(++result.packings) / most_layouts);
-      if (fits && (options_.free_aspect ? layout.fill > best.fill : scale > best.scale))
-        best = std::move(layout);
-      if (fits && (scale >= most || height >= kNearlyFull * side_)) break;
-      (fits ? low : high) = scale;
-      constexpr double kSafe = 0.997;
-      scale = std::min(most, kSafe * scale * std::sqrt(side_ / height));
-      if (!options_.free_aspect && (scale >= high || scale <= low)) scale = (low + high) / 2;
+    for (const Way& way : ways_) {
+      improve(way, {guess, most}, best, result);
+      if (context_.cancelled()) return std::nullopt;
+      if (!options_.free_aspect && best.scale >= most) break;
     }
     if (best.scale == 0) return std::nullopt;
     write(std::move(best), result);
@@ -97,6 +88,39 @@ class ManyCharts {
   }
 
  private:
+  // Charts that are laid down as one piece.
+  struct Way {
+    std::vector<ChartPair> pairs;
+    std::vector<RowPlan> rows;
+    std::int32_t rows_a_page = 1;  // that lie side by side, at least
+    std::vector<bool> joined;      // one per chart
+  };
+
+  struct Scales {
+    double first = 0, most = 0;
+  };
+
+  // Looks for the largest scale in this way. Replaces `best` by what is better.
+  void improve(const Way& way, Scales scales, ManyLayout& best, FitResult& result) const {
+    double scale = scales.first;
+    double low = 0, high = std::numeric_limits<double>::infinity();  // fits, and does not
+    const std::uint32_t most_layouts = options_.free_aspect ? kMostLayouts : kMostGiven;
+    for (std::uint32_t tried = 0; tried < most_layouts; ++tried) {
+      ManyLayout layout = lay_out(way, scale);
+      if (context_.cancelled() || layout.height == 0) return;
+      const double height = layout.height;
+      const bool fits = height <= side_;
+      context_.report("packing", double(++result.packings) / double(ways_.size() * most_layouts));
+      if (fits && (options_.free_aspect ? layout.fill > best.fill : scale > best.scale))
+        best = std::move(layout);
+      if (fits && (scale >= scales.most || height >= kNearlyFull * side_)) break;
+      (fits ? low : high) = scale;
+      constexpr double kSafe = 0.997;
+      scale = std::min(scales.most, kSafe * scale * std::sqrt(side_ / height));
+      if (!options_.free_aspect && (scale >= high || scale <= low)) scale = (low + high) / 2;
+    }
+  }
+
   PieceOptions piece_options(std::span<const double> factors) const {
     PieceOptions options;
     options.factors = factors;
@@ -108,11 +132,35 @@ class ManyCharts {
     return options;
   }
 
-  // Rasterises the charts that are not paired.
-  std::vector<Piece> lone_pieces(std::span<const double> factors,
+  // Joins charts in pairs, and if there are copies of charts, also in rows of several lengths.
+  void find_ways(bool any_angle) {
+    Way way;
+    way.joined.assign(charts_.items.size(), false);
+    if (any_angle) way.pairs = find_pairs(charts_.outlines, context_);
+    for (const ChartPair& p : way.pairs) way.joined[p.first] = way.joined[p.second] = true;
+    ways_.push_back(way);
+    if (any_angle) way.rows = find_rows(charts_.outlines, context_);
+    double in_rows = 0;
+    for (const RowPlan& r : way.rows)
+      in_rows += double(r.alike.charts.size()) * charts_.outlines[r.alike.charts[0]].area;
+    if (in_rows < kRowsShare * area_) return;
+    way.joined.assign(charts_.items.size(), false);
+    for (const RowPlan& r : way.rows)
+      for (const std::uint32_t i : r.alike.charts) way.joined[i] = true;
+    std::erase_if(way.pairs,
+                  [&](const ChartPair& p) { return way.joined[p.first] || way.joined[p.second]; });
+    for (const ChartPair& p : way.pairs) way.joined[p.first] = way.joined[p.second] = true;
+    for (const std::int32_t rows_a_page : {1, 2, 3}) {
+      way.rows_a_page = rows_a_page;
+      ways_.push_back(way);
+    }
+  }
+
+  // Rasterises the charts that are not joined.
+  std::vector<Piece> lone_pieces(const Way& way, std::span<const double> factors,
                                  std::vector<std::uint32_t>& lone) const {
-    for (std::uint32_t i = 0; i < paired_.size(); ++i) {
-      if (!paired_[i]) lone.push_back(i);
+    for (std::uint32_t i = 0; i < way.joined.size(); ++i) {
+      if (!way.joined[i]) lone.push_back(i);
     }
     if (lone.empty()) return {};
     PieceOptions options = piece_options(factors);
@@ -120,23 +168,34 @@ class ManyCharts {
     return make_pieces(charts_.outlines, options, context_);
   }
 
+  std::vector<JoinedPiece> joined_pieces(const Way& way, std::span<const double> factors) const {
+    const ScaledCharts charts{charts_.outlines, factors};
+    const PieceOptions common = piece_options({});
+    std::vector<JoinedPiece> joined(way.pairs.size());
+    parallel_for(context_, way.pairs.size(), 16, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t k = begin; k < end; ++k)
+        joined[k] = make_pair_piece(charts, way.pairs[k], common);
+    });
+    std::vector<std::vector<JoinedPiece>> rows(way.rows.size());
+    parallel_for(context_, way.rows.size(), 1, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t k = begin; k < end; ++k)
+        rows[k] = make_row_pieces(charts, way.rows[k], common, side_ / way.rows_a_page);
+    });
+    for (std::vector<JoinedPiece>& group : rows)
+      for (JoinedPiece& row : group) joined.push_back(std::move(row));
+    return joined;
+  }
+
   // Packs all charts at this scale into strips as wide as a page.
-  ManyLayout lay_out(double scale) const {
+  ManyLayout lay_out(const Way& way, double scale) const {
     ManyLayout layout;
     layout.scale = scale;
     const std::vector<double> factors = chart_factors(charts_.items, options_, scale);
-    std::vector<PairPiece> joined(pairs_.size());
-    const PieceOptions common = piece_options({});
-    parallel_for(context_, pairs_.size(), 16, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t k = begin; k < end; ++k) {
-        const ChartPair& p = pairs_[k];
-        joined[k] = make_pair_piece({charts_.outlines, factors}, p, common);
-      }
-    });
+    std::vector<JoinedPiece> joined = joined_pieces(way, factors);
     std::vector<Piece> pieces;
-    for (PairPiece& j : joined) pieces.push_back(std::move(j.piece));
+    for (JoinedPiece& j : joined) pieces.push_back(std::move(j.piece));
     std::vector<std::uint32_t> lone;
-    for (Piece& p : lone_pieces(factors, lone)) pieces.push_back(std::move(p));
+    for (Piece& p : lone_pieces(way, factors, lone)) pieces.push_back(std::move(p));
     if (context_.cancelled()) return layout;
     const std::vector<PagePlace> places = fill_pages(pieces, layout);
     if (context_.cancelled() || layout.height == 0) return layout;
@@ -144,21 +203,20 @@ class ManyCharts {
     layout.fill = scale * scale * area_ / (cell * cell * side_ * layout.height * options_.pages);
     layout.placements.resize(factors.size());
     for (std::size_t i = 0; i < factors.size(); ++i) layout.placements[i].scale = factors[i];
-    for (std::size_t k = 0; k < pairs_.size(); ++k) {
-      const auto& [first, second] = joined[k].parts[places[k].place.direction];
-      place(first, 0, places[k], layout.placements[pairs_[k].first]);
-      place(second, pairs_[k].turn, places[k], layout.placements[pairs_[k].second]);
-    }
+    for (std::size_t k = 0; k < joined.size(); ++k)
+      for (const JoinedPart& part : joined[k].parts[places[k].place.direction])
+        place(part, places[k], layout.placements[part.chart]);
     for (std::size_t k = 0; k < lone.size(); ++k) {
-      const Piece& piece = pieces[pairs_.size() + k];
-      const PagePlace& at = places[pairs_.size() + k];
+      const Piece& piece = pieces[joined.size() + k];
+      const PagePlace& at = places[joined.size() + k];
       FitPlacement& out = layout.placements[lone[k]];
       if (piece.cells() == 0) {
         write_at_corner(charts_.outlines[lone[k]], out);
         continue;
       }
       const Mask& mask = piece.masks[at.place.direction];
-      place({{0, 0, mask.width, mask.height}, piece.origins[at.place.direction]}, 0, at, out);
+      place({lone[k], 0, {0, 0, mask.width, mask.height}, piece.origins[at.place.direction]}, at,
+            out);
     }
     return layout;
   }
@@ -194,14 +252,15 @@ class ManyCharts {
     return places;
   }
 
-  void place(const PairPart& part, double turn, const PagePlace& on, FitPlacement& out) const {
+  void place(const JoinedPart& part, const PagePlace& on, FitPlacement& out) const {
     const std::int32_t cell = grid_.cell;
     const NestPlace& at = on.place;
     out.page = on.page;
     const Rect box{(at.at.x + part.cells.x) * cell, (at.at.y + part.cells.y) * cell,
                    part.cells.width * cell, part.cells.height * cell};
     constexpr double kTurn = 2 * std::numbers::pi;
-    const double angle = std::fmod(turn + kTurn * at.direction / grid_.directions + kTurn, kTurn);
+    const double angle =
+        std::fmod(part.turn + kTurn * at.direction / grid_.directions + kTurn, kTurn);
     write_outline({box, angle, {box.x + part.origin.x, box.y + part.origin.y}}, options_, out);
   }
 
@@ -233,8 +292,7 @@ class ManyCharts {
   const FitCharts charts_;
   const FitOptions& options_;
   const Context& context_;
-  std::vector<ChartPair> pairs_;
-  std::vector<bool> paired_;  // one per chart
+  std::vector<Way> ways_;
   GridChoice grid_;
   bool given_ = false;     // pages keep their size
   std::int32_t side_ = 0;  // in cells

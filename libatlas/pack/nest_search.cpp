@@ -63,10 +63,12 @@ class PlanMoves {
   Random random_;
 };
 
+constexpr double kMostRows = 1 << 24;  // of a strip
+
 // Returns the height in cells plus the potential as a fraction below one. Pieces that are left over
 // weigh more than any height.
 double energy(const Nest& nest, double total_cells) {
-  if (!nest.left_over.empty()) return 1e6 * static_cast<double>(nest.left_over.size());
+  if (!nest.left_over.empty()) return 2 * kMostRows * static_cast<double>(nest.left_over.size());
   const double mean = nest.potential / std::max(1.0, total_cells);
   return nest.used_height + mean / std::max(1.0, double(nest.used_height));
 }
@@ -87,7 +89,7 @@ std::int32_t most_rows(std::span<const Piece> pieces, double total_cells, std::i
     for (const Mask& m : p.masks) tallest = std::max(tallest, m.height);
   const double needed = tallest + 4 * total_cells / std::max(1, width);
   const double affordable = kBytes / (kLevels * 8 * (width / 64 + 2.0));
-  return static_cast<std::int32_t>(std::min(std::max(needed, affordable), double(1 << 24)));
+  return static_cast<std::int32_t>(std::min(std::max(needed, affordable), kMostRows));
 }
 
 }  // namespace

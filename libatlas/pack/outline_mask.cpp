@@ -248,13 +248,11 @@ bool overlap(const Mask& a, const Mask& b, std::int32_t dx, std::int32_t dy) {
   return false;
 }
 
-Mask join(const Mask& a, const Mask& b, std::int32_t dx, std::int32_t dy) {
+Mask join(std::span<const MaskAt> masks) {
   RunSet set;
-  set.items.reserve(a.runs.size() + b.runs.size());
-  for (std::int32_t r = 0; r < a.height; ++r)
-    for (const Run& run : a.row(r)) set.items.push_back({r, run});
-  for (std::int32_t r = 0; r < b.height; ++r)
-    for (const Run& run : b.row(r)) set.items.push_back({r + dy, {run.begin + dx, run.end + dx}});
+  for (const auto& [mask, x, y] : masks)
+    for (std::int32_t r = 0; r < mask.height; ++r)
+      for (const Run& run : mask.row(r)) set.items.push_back({r + y, {run.begin + x, run.end + x}});
   return set.build();
 }
 

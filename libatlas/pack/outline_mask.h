@@ -52,8 +52,13 @@ Mask half_turn(const Mask& mask);
 // and dy cells above it.
 bool overlap(const Mask& a, const Mask& b, std::int32_t dx, std::int32_t dy);
 
-// Returns the cells of both if b is put dx cells to the right of a and dy cells above it.
-Mask join(const Mask& a, const Mask& b, std::int32_t dx, std::int32_t dy);
+struct MaskAt {
+  const Mask& mask;
+  std::int32_t x = 0, y = 0;  // cells to the right and above
+};
+
+// Returns the cells of all masks.
+Mask join(std::span<const MaskAt> masks);
 
 // Returns the mask on cells that are `factor` times as large: every large cell that contains a cell
 // of the mask.

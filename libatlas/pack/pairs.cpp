@@ -1,6 +1,7 @@
 #include "libatlas/pack/pairs.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 
@@ -198,8 +199,8 @@ std::vector<ChartPair> find_pairs(std::span<const ChartOutline> outlines, const 
   return pairs;
 }
 
-PairPiece make_pair_piece(const ScaledCharts& charts, const ChartPair& pair,
-                          const PieceOptions& options) {
+JoinedPiece make_pair_piece(const ScaledCharts& charts, const ChartPair& pair,
+                            const PieceOptions& options) {
   const std::array outlines{charts.outlines[pair.first],
                             turned(charts.outlines[pair.second], pair.turn)};
   const std::array factors{charts.factors[pair.first], charts.factors[pair.second]};
@@ -208,7 +209,7 @@ PairPiece make_pair_piece(const ScaledCharts& charts, const ChartPair& pair,
   own.masks_only = true;
   // One thread: the caller makes many pairs at once.
   const std::vector<Piece> pieces = make_pieces(outlines, own, Context{.threads = 1});
-  PairPiece joined;
+  JoinedPiece joined;
   const std::size_t directions = pieces[0].masks.size();
   joined.piece.masks.resize(directions);
   joined.parts.resize(directions);
@@ -222,10 +223,10 @@ PairPiece make_pair_piece(const ScaledCharts& charts, const ChartPair& pair,
     const Vec2d touching{in_a.x + factors[0] * p.x - factors[1] * q.x - in_b.x,
                          in_a.y + factors[0] * p.y - factors[1] * q.y - in_b.y};
     const auto [dx, dy] = closest_place({a, b}, touching, rotated(pair.normal, angle), options);
-    joined.piece.masks[k] = join(a, b, dx, dy);
+    joined.piece.masks[k] = join(std::array{MaskAt{a}, MaskAt{b, dx, dy}});
     const std::int32_t x = std::max(0, -dx), y = std::max(0, -dy);
-    joined.parts[k] = {PairPart{{x, y, a.width, a.height}, in_a},
-                       PairPart{{x + dx, y + dy, b.width, b.height}, in_b}};
+    joined.parts[k] = {{pair.first, 0, {x, y, a.width, a.height}, in_a},
+                       {pair.second, pair.turn, {x + dx, y + dy, b.width, b.height}, in_b}};
   }
   complete(joined.piece, options.keep_tests);
   return joined;

@@ -2,13 +2,12 @@
 // leave less.
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
 
 #include "libatlas/pack/chart_outline.h"
-#include "libatlas/pack/nest.h"
+#include "libatlas/pack/joined_piece.h"
 
 namespace atlas::pack {
 
@@ -27,27 +26,9 @@ struct ChartPair {
 // May be incomplete if the context is cancelled.
 std::vector<ChartPair> find_pairs(std::span<const ChartOutline> outlines, const Context& context);
 
-// Where a chart lies in the box of its pair's mask, and the origin of its own mask, in texels.
-struct PairPart {
-  Rect cells = {};
-  Vec2d origin = {};
-};
-
-// A pair as one piece, and the places of both charts in each direction.
-struct PairPiece {
-  Piece piece;
-  std::vector<std::array<PairPart, 2>> parts;
-};
-
-// All charts, and the factors by which they are scaled.
-struct ScaledCharts {
-  std::span<const ChartOutline> outlines = {};
-  std::span<const double> factors = {};
-};
-
 // Rasterises a pair. In each direction the masks of its charts lie as close along the edge as they
 // can without an overlap. `options` are those of make_pieces(), but for the factors.
-PairPiece make_pair_piece(const ScaledCharts& charts, const ChartPair& pair,
-                          const PieceOptions& options);
+JoinedPiece make_pair_piece(const ScaledCharts& charts, const ChartPair& pair,
+                            const PieceOptions& options);
 
 }  // namespace atlas::pack

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <cstddef>
+#include <utility>
 
 #include "libatlas/pack/larger_pages.h"
 #include "libatlas/scene/named_materials.h"
@@ -145,6 +146,20 @@ std::string on_black(const ExportReport& report) {
       double(report.luminance.percentile99), report.exposure_white);
 }
 
+// Light of ten times the median as white shows the median as a dark grey (89 of 255).
+std::string on_dark(const ExportReport& report) {
+  const double median = report.luminance.median;
+  const bool curve = report.tone.op != ToneOperator::reinhard_devlin;
+  const std::string white = fmt::format("ToneOptions::white {:.3g}", 10 * median);
+  return fmt::format(
+      "more than half of what is seen is shown black: its median is {:.3g}, and white begins at "
+      "{:.3g} ({})",
+      median, report.exposure_white,
+      curve ? "ToneOptions::op reinhard-devlin shows dark rooms and what is bright beside them, " +
+                  white + " the dark alone"
+            : "a linear tone curve with " + white + " shows the dark alone");
+}
+
 // Whether given charts are hardly larger than single triangles. Two triangles a chart are usual:
 // those of quads in maps of light.
 bool keeps_crumbs(const ExportReport& report) {
@@ -165,6 +180,21 @@ float shown(const ExportReport& report, double luminance) {
   return report.tone.display({v, v, v}).x;
 }
 
+std::vector<std::string> advice_on_tone(const ExportReport& report, const ExportOptions& options) {
+  constexpr float kBlack = 6 / 255.0f;
+  std::vector<std::string> lines;
+  const LuminanceStatistics& light = report.luminance;
+  const auto is_black = [&](double v) { return v > 0 && shown(report, v) < kBlack; };
+  // A measured white suits the brightest light, even if all light is equal.
+  const bool measured = options.tone.white <= 0 && options.tone.exposure_stops == 0;
+  if (!measured && shown(report, light.log_average) >= 1) lines.push_back(on_white(report));
+  if (!measured && is_black(light.percentile99))
+    lines.push_back(on_black(report));
+  else if (is_black(light.median) && options.quantity != Quantity::colour)
+    lines.push_back(on_dark(report));
+  return lines;
+}
+
 bool is_open(const Material& m, const Scene& scene) {
   const bool holes =
       m.texture >= 0 && scene.textures[std::size_t(m.texture)].image.channels % 2 == 0;
@@ -178,7 +208,6 @@ std::vector<std::string> advice_on(const ExportReport& report, const ExportOptio
   // Below these limits, it shows that pages lack light that the scene has.
   constexpr double kFewTexels = 32 * 32, kHardlyAny = 8 * 8, kLittleUsed = 0.4, kCoarse = 2;
   constexpr std::size_t kManyCharts = 256;
-  constexpr float kBlack = 6 / 255.0f;
   std::vector<std::string> lines;
   if (options.charts.keep_uv_charts && report.repairs.kept_charts == 0)
     lines.push_back(
@@ -211,12 +240,7 @@ std::vector<std::string> advice_on(const ExportReport& report, const ExportOptio
     lines.push_back(on_coarse_texels(report, options));
   else if (loses_detail(report))
     lines.push_back(on_lost_detail(report, options));
-  // A measured white suits the light, even if all light is equal.
-  if (options.tone.white <= 0 && options.tone.exposure_stops == 0) return lines;
-  const LuminanceStatistics& light = report.luminance;
-  if (shown(report, light.log_average) >= 1) lines.push_back(on_white(report));
-  if (light.percentile99 > 0 && shown(report, light.percentile99) < kBlack)
-    lines.push_back(on_black(report));
+  for (std::string& line : advice_on_tone(report, options)) lines.push_back(std::move(line));
   return lines;
 }
 

@@ -50,6 +50,7 @@ class Export {
   Export(const LoadedScene& loaded, const ExportOptions& options,
          const std::function<void(const StageReport&)>& stage_done, const Context& context)
       : scene_(loaded.scene),
+        view_(loaded.view),
         options_(options),
         context_(context),
         plan_(make_plan(scene_, options)),
@@ -360,7 +361,8 @@ class Export {
                              coarse_ ? &*coarse_ : nullptr,
                              plan_.bake,
                              sampler_ ? &*sampler_ : nullptr,
-                             image_sources_};
+                             image_sources_,
+                             view_};
     Result<StageOutcome> written = write_export(made, files_, report_, context);
     if (!written.ok()) return written.status();
     record_.finish(std::move(*written));
@@ -368,6 +370,7 @@ class Export {
   }
 
   const Scene& scene_;
+  const std::optional<FileView> view_;
   const ExportOptions& options_;
   const Context& context_;
   const ExportPlan plan_;

@@ -20,6 +20,8 @@ namespace atlas {
 // ExportOptions::charts_only, give plain uvs. The report lacks the path of the scene and what
 // reading it took, which the caller adds. A scene that a program has built itself is passed as
 // `LoadedScene{.scene = std::move(scene)}` after complete_scene() (scene/check_scene.h).
+// The world begins with `loaded.view`, unless there is none or it looks straight up or down: then
+// choose_viewpoint() decides.
 // `stage_done` (may be empty) is called after each stage.
 // Errors: bad_option (the message names the option), bad_input, no_solution, io, cancelled.
 Result<ExportReport> export_world(const LoadedScene& loaded, const ExportOptions& options,

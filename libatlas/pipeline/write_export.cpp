@@ -4,10 +4,13 @@
 
 #include <cmath>
 #include <cstdint>
+#include <glm/geometric.hpp>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "libatlas/core/bounds.h"
 #include "libatlas/core/glm_bridge.h"
 #include "libatlas/core/luma.h"
 #include "libatlas/core/parallel.h"
@@ -49,7 +52,27 @@ std::vector<std::uint8_t> shown_light(const ExportToWrite& made, const ToneMappi
   return shown;
 }
 
+// Returns the view that the scene's file begins with. Nothing if it looks straight up or down: such
+// a view has no heading, so viewers could not keep upright.
+std::optional<Viewpoint> own_viewpoint(const ExportToWrite& made) {
+  if (!made.view) return std::nullopt;
+  constexpr double kUpright = 0.9999;
+  const glm::dvec3 ahead = glm::normalize(to_glm(made.view->direction));
+  if (std::abs(made.options.up == Up::z ? ahead.z : ahead.y) > kUpright) return std::nullopt;
+  const Scene& scene = made.scene;
+  const glm::dvec3 eye = to_glm(made.view->position) - to_glm(scene.origin);
+  Bounds<glm::dvec3> box, point;
+  for (const std::uint32_t i : scene.indices) box.add(to_dvec(scene.positions[i]));
+  point.add(eye);
+  Viewpoint view;
+  view.position = from_glm(eye);
+  view.direction = from_glm(ahead);
+  view.inside = box.meets(point);
+  return view;
+}
+
 Viewpoint viewpoint_of(const ExportToWrite& made, const ToneMapping& tone, const Context& context) {
+  if (const std::optional<Viewpoint> own = own_viewpoint(made)) return *own;
   const std::vector<std::uint8_t> light =
       made.baked ? shown_light(made, tone, context) : std::vector<std::uint8_t>();
   ViewpointOptions eye;

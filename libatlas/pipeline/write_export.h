@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <span>
 
 #include "libatlas/core/atomic_file.h"
@@ -11,6 +12,7 @@
 #include "libatlas/pipeline/page_layout.h"
 #include "libatlas/pipeline/stage_recorder.h"
 #include "libatlas/report/export_report.h"
+#include "libatlas/scene/reader.h"
 #include "libatlas/scene/scene.h"
 #include "libatlas/simplify/simplify.h"
 #include "libatlas/texture/luminance.h"
@@ -28,6 +30,7 @@ struct ExportToWrite {
   const LuminanceSampler* light = nullptr;  // that light; not null if baked
   // One per page with an image: where it lies until the files are committed.
   std::span<const std::filesystem::path> image_sources = {};
+  std::optional<FileView> view = {};  // where a viewer of the scene's own file begins
 };
 
 // Writes the world and commits `files`, which hold the pages' images. Adds to the report what was

@@ -146,6 +146,7 @@ class GltfParser {
     const tinygltf::Node& node = model_.nodes[index];
     const Above here{parent.matrix * gltf_local_matrix(node), parent.hidden || gltf_hidden(node)};
     const GltfPlace place{nodes_visited_++, index, node.mesh};
+    if (!here.hidden) take_camera(node, here.matrix);
     if (node.mesh >= 0 && here.hidden) {
       builder_.defects.add(DefectKind::node_hidden,
                            [&] { return fmt::format("{}: {}", builder_.file, where); });
@@ -157,6 +158,13 @@ class GltfParser {
     }
     on_path_[index] = false;
     return {};
+  }
+
+  // Orthographic cameras show plans.
+  void take_camera(const tinygltf::Node& node, const glm::dmat4& matrix) {
+    if (node.camera < 0 || std::size_t(node.camera) >= model_.cameras.size()) return;
+    if (model_.cameras[std::size_t(node.camera)].type != "perspective") return;
+    builder_.take_view(from_glm(glm::dvec3(matrix[3])), from_glm(-glm::dvec3(matrix[2])));
   }
 
   Status add_instances(const tinygltf::Node& node, const glm::dmat4& matrix, GltfPlace place,

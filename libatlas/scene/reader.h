@@ -3,6 +3,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <vector>
 
 #include "libatlas/core/context.h"
@@ -38,6 +39,12 @@ struct ReadOptions {
   bool keep_scene = false;
 };
 
+// Where a viewer of a file begins, in the coordinates of the file.
+struct FileView {
+  Vec3d position = {};
+  Vec3d direction = {0, 0, -1};  // unit length
+};
+
 struct LoadedScene {
   Scene scene = {};
   DefectReport defects = {};  // what was left out or replaced
@@ -50,6 +57,8 @@ struct LoadedScene {
   // The same, one per material of the scene, if the pages differ in shape (then 1 for a material of
   // which the file says nothing); else empty. For ChartOptions::material_uv_aspects.
   std::vector<double> material_uv_aspects = {};
+  // The first Viewpoint of a VRML file, or the first perspective camera of a glTF file's scene.
+  std::optional<FileView> view = {};
 };
 
 // Reads the scene at `path`; the extension (.obj .ply .off .stl .gltf .glb .wrl .wrz, any case)

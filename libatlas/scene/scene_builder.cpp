@@ -3,9 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <unordered_map>
 
+#include "libatlas/core/glm_bridge.h"
 #include "libatlas/core/is_finite.h"
 #include "libatlas/core/srgb.h"
 #include "libatlas/image/file_kind.h"
@@ -34,6 +36,13 @@ std::vector<std::uint32_t> compact(std::vector<std::uint32_t>& ids, std::size_t 
 }
 
 }  // namespace
+
+void SceneBuilder::take_view(const Vec3d& position, const Vec3d& direction) {
+  const double length = glm::length(to_glm(direction));
+  const Vec3d p = position;
+  if (view || !std::isfinite(p.x + p.y + p.z + length) || length == 0) return;
+  view = {position, from_glm(to_glm(direction) / length)};
+}
 
 std::int32_t SceneBuilder::texture_of(const std::filesystem::path& texture_file,
                                       const std::string& place) {
@@ -317,6 +326,7 @@ Result<LoadedScene> SceneBuilder::finish(const ReadOptions& options, const Conte
   if (!unlit_colours.empty()) unlit_colours.resize(scene.positions.size(), {1, 1, 1});
   scene.unlit_colours = std::move(unlit_colours);
   scene.vertex_opacity = std::move(vertex_opacity);
+  loaded.view = view;
   loaded.defects = std::move(defects);
   if (context.cancelled()) return Status::cancelled();
   return loaded;

@@ -7,6 +7,7 @@
 #include <limits>
 #include <map>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -85,6 +86,7 @@ class SceneBuilder {
   LossCounts not_read;                       // Scene::not_read, without the materials' MTL lines
   std::vector<std::filesystem::path> files;  // LoadedScene::files
   UvPages uv_pages;                          // what the file says of the pages of its uvs
+  std::optional<FileView> view;              // LoadedScene::view
 
   // What the next faces belong to.
   std::uint32_t material = 0, object = 0;
@@ -98,6 +100,10 @@ class SceneBuilder {
       defects.add(DefectKind::position_not_finite, [&] { return place_of_vertex(i); });
     }
   }
+
+  // Takes where a viewer is and where it looks, unless there is such a view already, or it is none
+  // of finite numbers. The direction may have any length.
+  void take_view(const Vec3d& position, const Vec3d& direction);
 
   // Returns the index of this file's texture, which all that ask for it share. `place` says where
   // it is asked for; the first one is kept for messages.

@@ -99,6 +99,7 @@ class VrmlParser : VrmlScanner {
       if (is_group(type)) return group(matrix, depth);
       if (type == "Switch" || type == "LOD") return choice(type == "LOD", matrix, depth);
       if (type == "WorldInfo") return world_info();
+      if (type == "Viewpoint") return viewpoint(matrix);
       if (type == "Inline") ignored(type);  // the shapes of another file
       skip();
     });
@@ -135,6 +136,19 @@ class VrmlParser : VrmlScanner {
       }
       return true;
     });
+  }
+
+  void viewpoint(const glm::dmat4& matrix) {
+    glm::dvec3 position(0, 0, 10);
+    glm::dvec4 turn(0, 0, 1, 0);
+    fields([&](std::string_view name) {
+      if (name == "position") return position = glm::dvec3(row(3)), true;
+      if (name == "orientation") return turn = row(4), true;
+      return false;
+    });
+    const glm::dmat4 axes = matrix * rotation(turn);
+    builder_.take_view(from_glm(glm::dvec3(matrix * glm::dvec4(position, 1))),
+                       from_glm(-glm::dvec3(axes[2])));
   }
 
   // The children of a Transform may come before its translation, rotation and scale, so they are
@@ -266,6 +280,7 @@ class VrmlParser : VrmlScanner {
 
   void finish() {
     for (Vec3d& p : builder_.positions) p = from_glm(origin_ + to_glm(p));
+    if (auto& view = builder_.view) view->position = from_glm(origin_ + to_glm(view->position));
     builder_.check_positions(
         [&](std::size_t i) { return fmt::format("{}: vertex {}", builder_.file, i); });
     for (std::size_t i = 0; i < shapes_.size(); ++i) add_faces(shapes_[i], i);

@@ -11,7 +11,9 @@
 #include "libatlas/core/disjoint_sets.h"
 #include "libatlas/core/glm_bridge.h"
 #include "libatlas/core/half_edge.h"
+#include "libatlas/core/parallel.h"
 #include "libatlas/scene/triangle_area.h"
+#include "libatlas/texture/standing_walls.h"
 
 namespace atlas {
 namespace {
@@ -43,6 +45,11 @@ struct Crease {
   bool jumps;  // the light is another on the triangle that continues it, else on all others
 };
 
+// A half-edge that another continues smoothly with visibly other light.
+struct Step {
+  std::uint32_t half_edge, other;
+};
+
 double difference(const Vec3f& a, const Vec3f& b) {
   return std::max({std::abs(a.x - b.x), std::abs(a.y - b.y), std::abs(a.z - b.z)});
 }
@@ -63,6 +70,7 @@ class LightSeamFinder {
     gather_sides();
     if (sides_.empty() || context.cancelled()) return {};
     find_creases();
+    part_below_walls(context);
     if (context.cancelled()) return {};
     if (std::none_of(creases_.begin(), creases_.end(), [](const Crease& c) { return c.jumps; }))
       return {};
@@ -87,6 +95,10 @@ class LightSeamFinder {
   std::uint32_t place(std::uint32_t h) const { return welded_.place[scene_.indices[h]]; }
   glm::dvec3 position(std::uint32_t h) const {
     return to_dvec(scene_.positions[scene_.indices[h]]);
+  }
+
+  double length_of(std::uint32_t h) const {
+    return glm::distance(position(h), position(next_half_edge(h)));
   }
 
   // Fills sides_ with the half-edges at one of whose ends vertices differ in light, sorted by edge.
@@ -118,12 +130,15 @@ class LightSeamFinder {
   // Appends side first + k to the creases, or joins it to the face that continues it.
   void judge(std::size_t first, std::size_t k, std::span<const Bank> banks) {
     const std::uint32_t h = sides_[first + k].half_edge;
-    const double length = glm::length(position(next_half_edge(h)) - position(h));
+    const double length = length_of(h);
     const std::size_t next = continuation(k, banks);
     if (next != k) {
       const std::uint32_t other = sides_[first + next].half_edge;
+      const bool jumps = jump(banks[next], banks[k]) > options_.visible_jump;
       if (parted(k, banks))
-        creases_.push_back({h, other, length, jump(banks[next], banks[k]) > options_.visible_jump});
+        creases_.push_back({h, other, length, jumps});
+      else if (jumps)
+        steps_.push_back({h, other});
       else
         faces_.join(scene_.indices[h], scene_.indices[other]);
       return;
@@ -162,13 +177,18 @@ class LightSeamFinder {
       const float* e = triangle.illumination[corner % 3];
       return tone_.display({e[0], e[1], e[2]});
     };
-    const glm::dvec3 p = position(3 * t);
-    const glm::dvec3 cross = glm::cross(position(3 * t + 1) - p, position(3 * t + 2) - p);
-    const double twice = glm::length(cross);
-    const glm::dvec3 normal = twice > 0 ? cross / twice : glm::dvec3(0);
+    const glm::dvec3 normal = normal_of(t);
     const Vec3f from = light(h), to = light(next_half_edge(h));
     if (place(h) == side.low) return {true, {from, to}, normal};
     return {false, {to, from}, normal};
+  }
+
+  // Returns 0 for a triangle without area.
+  glm::dvec3 normal_of(std::uint32_t t) const {
+    const glm::dvec3 p = position(3 * t);
+    const glm::dvec3 cross = glm::cross(position(3 * t + 1) - p, position(3 * t + 2) - p);
+    const double twice = glm::length(cross);
+    return twice > 0 ? cross / twice : glm::dvec3(0);
   }
 
   bool smooth(const Bank& a, const Bank& b) const {
@@ -178,6 +198,44 @@ class LightSeamFinder {
 
   static double jump(const Bank& a, const Bank& b) {
     return (difference(a.light[0], b.light[0]) + difference(a.light[1], b.light[1])) / 2;
+  }
+
+  // A partition that stands on the floors of two rooms, or passes through them, often shares no
+  // vertices with them. Makes creases of the steps that something stands on, and joins the faces
+  // at all others.
+  void part_below_walls(const Context& context) {
+    if (steps_.empty()) return;
+    join_faces();
+    const std::vector<std::uint8_t> stands = stand_at_steps(context);
+    if (context.cancelled()) return;
+    for (std::size_t i = 0; i < steps_.size(); ++i) {
+      const auto [h, other] = steps_[i];
+      if (stands[i])
+        creases_.push_back({h, other, length_of(h), true});
+      else
+        faces_.join(scene_.indices[h], scene_.indices[other]);
+    }
+    steps_.clear();
+  }
+
+  // Returns for each step whether something stands on it. Faces that are not wide even if they end
+  // at all steps, as where light is constant per triangle, are not looked at.
+  std::vector<std::uint8_t> stand_at_steps(const Context& context) {
+    std::vector<std::uint8_t> stands(steps_.size(), 0);
+    std::vector<std::uint32_t> wide;
+    const FaceSizes sizes = face_sizes();
+    for (std::uint32_t i = 0; i < stands.size(); ++i)
+      if (!thin(sizes, steps_[i].half_edge) && !thin(sizes, steps_[i].other)) wide.push_back(i);
+    if (wide.empty()) return stands;
+    const StandingWalls walls(scene_, options_.texel);
+    parallel_for(context, wide.size(), 64, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t k = begin; k < end; ++k) {
+        const std::uint32_t h = steps_[wide[k]].half_edge;
+        stands[wide[k]] = walls.along({position(h), position(next_half_edge(h)), normal_of(h / 3)},
+                                      least_cosine_);
+      }
+    });
+    return stands;
   }
 
   // A face is what hangs together by vertices of the input, by vertices of one light, or by edges
@@ -216,16 +274,31 @@ class LightSeamFinder {
     });
   }
 
-  void keep_creases_of_wide_faces() {
-    std::vector<double> area(scene_.positions.size(), 0), border(area);
+  // By the vertex that stands for a face: its area, and the length of its creases and steps.
+  struct FaceSizes {
+    std::vector<double> area, border;
+  };
+
+  FaceSizes face_sizes() {
+    FaceSizes sizes{std::vector<double>(scene_.positions.size(), 0), {}};
+    sizes.border = sizes.area;
     for (std::uint32_t h = 0; h < scene_.indices.size(); h += 3)
-      area[face(h)] += triangle_area(scene_, h / 3);
-    for (const Crease& c : creases_) border[face(c.half_edge)] += c.length;
-    const auto thin = [&](std::uint32_t h) {
-      const std::uint32_t f = face(h);
-      return 2 * area[f] < kThinTexels * options_.texel * border[f];
-    };
-    std::erase_if(creases_, [&](const Crease& c) { return thin(c.half_edge) || thin(c.other); });
+      sizes.area[face(h)] += triangle_area(scene_, h / 3);
+    for (const Crease& c : creases_) sizes.border[face(c.half_edge)] += c.length;
+    for (const Step& s : steps_) sizes.border[face(s.half_edge)] += length_of(s.half_edge);
+    return sizes;
+  }
+
+  bool thin(const FaceSizes& sizes, std::uint32_t h) {
+    const std::uint32_t f = face(h);
+    return 2 * sizes.area[f] < kThinTexels * options_.texel * sizes.border[f];
+  }
+
+  void keep_creases_of_wide_faces() {
+    const FaceSizes sizes = face_sizes();
+    std::erase_if(creases_, [&](const Crease& c) {
+      return thin(sizes, c.half_edge) || thin(sizes, c.other);
+    });
   }
 
   LightSeams result() const {
@@ -249,6 +322,7 @@ class LightSeamFinder {
   std::vector<std::uint8_t> differs_;  // one per place: vertices there have different light
   std::vector<Side> sides_;
   std::vector<Crease> creases_;
+  std::vector<Step> steps_;
 };
 
 // Triangles without area close T-junctions: a vertex hangs on the edge of a neighbour, whose light

@@ -21,7 +21,7 @@ struct LightSeamOptions {
   // triangle jumps at every edge.
   double crease_degrees = 20;
   // The length of a texel, scene units. Faces thinner than kThinTexels of them are not cut off:
-  // gutters would take more texels than they save.
+  // gutters would take more texels than they save. What is within a texel of an edge stands on it.
   double texel = 0;
 };
 
@@ -30,11 +30,12 @@ struct LightSeams {
   double length = 0;                // scene units
 };
 
-// Finds the creases of the sampler's scene at which the light jumps visibly. The edges that
-// vertices hang on, closed by triangles without area, become seams together, if on a quarter of
-// their length the light of the vertex differs visibly from that of the edge at its place. Takes
-// linear time, except for a sort of the edges where vertices at one place have different light.
-// Returns nothing useful once cancelled.
+// Finds the creases of the sampler's scene at which the light jumps visibly, and the edges of
+// smooth surfaces at which it does so below something that stands there. The edges that vertices
+// hang on, closed by triangles without area, become seams together, if on a quarter of their length
+// the light of the vertex differs visibly from that of the edge at its place. Takes linear time,
+// except for a sort of the edges where vertices at one place have different light, and for a search
+// of what stands on them. Returns nothing useful once cancelled.
 LightSeams find_light_seams(const LuminanceSampler& sampler, const ToneMapping& tone,
                             const LightSeamOptions& options, const Context& context);
 

@@ -75,6 +75,7 @@ Result<ViewScene> load_view(const fs::path& path, const ViewSceneOptions& option
   Result<ViewScene> view = make_view_scene(loaded->scene, options);
   if (!view.ok())
     return Status{view.status().code(), path.string() + ": " + view.status().message()};
+  view->start = loaded->view;
   return view;
 }
 

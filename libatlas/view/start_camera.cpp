@@ -70,6 +70,16 @@ Viewpoint start_of(const ViewScene& scene, ViewpointOptions options) {
 
 Camera start_camera(const ViewScene& scene, const Vec3d& up, double fov_degrees) {
   Camera camera = camera_for(scene.bounds, up, fov_degrees);
+  if (scene.start) {
+    const auto [p, d] = *scene.start;
+    const Vec3d& o = scene.origin;
+    camera.eye = {p.x - o.x, p.y - o.y, p.z - o.z};
+    fit_planes(camera, scene.bounds);
+    const double reach = camera.far_plane;
+    camera.target = {camera.eye.x + reach * d.x, camera.eye.y + reach * d.y,
+                     camera.eye.z + reach * d.z};
+    return camera;
+  }
   if (up.x != 0 || scene.caster_indices.empty()) return camera;
   ViewpointOptions eye;
   eye.metres_per_unit = scene.metres_per_unit;

@@ -6,10 +6,11 @@
 
 namespace atlas {
 
-// Returns a camera inside the scene if the scene surrounds a visitor, as where exported worlds
-// begin (choose_viewpoint()), with a view of something lit if the scene shows light. Otherwise, and
-// if `up` is the x axis, the camera looks at the whole scene from a little above its side. `up`
-// must be an axis.
+// Returns a camera where the scene's file says that a viewer begins (ViewScene::start), with
+// `fov_degrees`. If it says nothing, returns one inside the scene if the scene surrounds a visitor,
+// as where exported worlds begin (choose_viewpoint()), with a view of something lit if the scene
+// shows light. Otherwise, and if `up` is the x axis, the camera looks at the whole scene from a
+// little above its side. `up` must be an axis.
 Camera start_camera(const ViewScene& scene, const Vec3d& up,
                     double fov_degrees = Camera{}.fov_degrees);
 

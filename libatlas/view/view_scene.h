@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "libatlas/core/status.h"
+#include "libatlas/scene/reader.h"
 #include "libatlas/scene/scene.h"
 #include "libatlas/shadow/fit.h"
 
@@ -62,8 +63,9 @@ struct ViewScene {
   Box3 bounds = {};   // of the positions that triangles use
   Box3 middle = {};   // of these without the 5 % that lie outermost at each end of each axis
   Vec3d origin = {};  // added to a position, gives the coordinates of the file
-  double metres_per_unit = 1;  // > 0; used for the height of a visitor's eye
-  double light_scale = 1;      // exposure that puts the 99th percentile of the light at 1
+  std::optional<FileView> start = {};  // where the file says that a viewer begins
+  double metres_per_unit = 1;          // > 0; used for the height of a visitor's eye
+  double light_scale = 1;              // exposure that puts the 99th percentile of the light at 1
 
   std::size_t triangle_count() const { return indices.size() / 3; }
   bool textured() const { return !texcoords.empty(); }

@@ -49,7 +49,7 @@ std::size_t charts_of_patch(double angle, double bound, bool halves, double& str
   options.max_stretch = bound;
   const FlattenResult result = flatten(shape, charts, options);
   stretch_l2 = result.charts[0].distortion.stretch_l2;
-  EXPECT_EQ(result.split_charts, 0u);
+  EXPECT_EQ(result.split_charts(), 0u);
   return result.charts.size();
 }
 

@@ -176,7 +176,7 @@ TEST(ChartJob, WhatCrossesGoesToTheNeighbours) {
     Bench bench(wavy_ramp(wave), toothed(length, width));
     const std::size_t before = bench.triangles(0).size();
     const FlattenResult result = flatten_charts(bench.input(), bench.partition, {});
-    EXPECT_EQ(result.split_charts, 0u) << length << ' ' << width;
+    EXPECT_EQ(result.split_charts(), 0u) << length << ' ' << width;
     ASSERT_EQ(result.charts.size(), 3u) << length << ' ' << width;
     std::size_t all = 0, largest = 0;
     for (const FlatChart& chart : result.charts) {
@@ -290,7 +290,7 @@ TEST(ChartJob, ChartsThatGetTrianglesComeOutWhole) {
         EXPECT_LE(chart.distortion.stretch_999, 1.25);
       }
       EXPECT_EQ(all, bench.topology.triangle_count());
-      EXPECT_LE(result.split_charts, 2u) << length << ' ' << width;
+      EXPECT_LE(result.split_charts(), 2u) << length << ' ' << width;
     }
   }
 }
@@ -322,7 +322,7 @@ TEST(ChartJob, PiecesComeApart) {
     EXPECT_EQ(outcome.parts[t], t < 32 ? 0 : t < 50 ? 1 : 2) << t;
   }
   const FlattenResult result = flatten_charts(bench.input(), bench.partition, {});
-  EXPECT_EQ(result.split_charts, 0u);
+  EXPECT_EQ(result.split_charts(), 0u);
   ASSERT_EQ(result.charts.size(), 3u);
   EXPECT_EQ(result.charts[1].triangles.size(), 18u);
 }

@@ -87,6 +87,32 @@ TEST(ChartSetCheck, FlippedTrianglesThatDoNotExistAreIgnored) {
   }
 }
 
+TEST(ChartSetCheck, MaterialsAndDensitiesAreOnePerTriangle) {
+  const Mesh mesh(grid(20, 20));
+  const ChartSet set = checked_charts(mesh);
+  const auto expect = [&](const MeshView& view, const std::string& message) {
+    const Calls calls = call_all(view, set);
+    EXPECT_EQ(calls.check.message(), "test: " + message);
+    for (const Status& status : {calls.check, calls.measured, calls.widened, calls.cut})
+      EXPECT_EQ(status.code(), ErrorCode::bad_input) << message;
+  };
+  MeshView view = mesh.view();
+  const std::vector<std::uint32_t> materials(799, 1);
+  view.materials = materials;
+  expect(view, "799 materials for 800 triangles (none, or 1 a triangle)");
+  view = mesh.view();
+  std::vector<float> density(3, 1);
+  view.density = density;
+  expect(view, "3 densities for 800 triangles (none, or 1 a triangle)");
+  density.assign(800, 2);
+  view.density = density;
+  EXPECT_TRUE(check_chart_set(view, set, "test").ok());
+  density[7] = 0;
+  expect(view, "triangle 7: density 0 (must be above 0 and finite)");
+  density[7] = std::numeric_limits<float>::infinity();
+  expect(view, "triangle 7: density inf (must be above 0 and finite)");
+}
+
 TEST(ChartSetCheck, ClearancesAreNumbersFromZero) {
   const Mesh mesh(grid(20, 20));
   ChartSet set = checked_charts(mesh);

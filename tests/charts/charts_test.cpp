@@ -258,6 +258,21 @@ TEST(Charts, MaterialsStayApartUnlessAllowed) {
   EXPECT_EQ(charts_of(mesh, options).charts.size(), 1u);
 }
 
+// Also if that triangle has no area and was added to the chart last.
+TEST(Charts, AcrossMaterialsTellThatOfTheirFirstTriangle) {
+  Mesh mesh(grid(20, 20));
+  for (std::size_t t = 0; t < mesh.indices.size() / 3; ++t)
+    mesh.materials.push_back(t % 40 < 20 ? 3 : 5);
+  const std::uint32_t a = mesh.indices[3 * 30], b = mesh.indices[3 * 30 + 1];
+  mesh.indices.insert(mesh.indices.begin(), {a, b, b});
+  mesh.materials.insert(mesh.materials.begin(), 5);
+  ChartOptions options;
+  options.split_at_materials = false;
+  const ChartSet set = charts_of(mesh, options);
+  ASSERT_EQ(set.charts.size(), 1u);
+  EXPECT_EQ(set.charts[0].material, 5u);
+}
+
 TEST(Charts, DensityScalesTheCharts) {
   const Shape shape = together(grid(10, 10), moved(grid(10, 10), 1, {5, 0, 0}));
   const Mesh mesh(shape);

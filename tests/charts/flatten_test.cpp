@@ -53,7 +53,7 @@ TEST(Flatten, WallsAroundSmallHolesAreSlitNotDivided) {
         const Shape shape = bottle(around, along, bottom);
         const FlattenResult result = flatten_whole(shape);
         expect_whole(result, shape, 1.25);
-        EXPECT_EQ(result.split_charts, 0u) << around << ' ' << along << ' ' << bottom;
+        EXPECT_EQ(result.split_charts(), 0u) << around << ' ' << along << ' ' << bottom;
         EXPECT_EQ(result.charts.size(), 1u) << around << ' ' << along << ' ' << bottom;
       }
     }

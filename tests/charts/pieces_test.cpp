@@ -2,11 +2,14 @@
 
 #include <algorithm>
 #include <atomic>
+#include <numeric>
 #include <random>
 #include <string>
 #include <string_view>
 
+#include "libatlas/charts/cut_pieces.h"
 #include "libatlas/charts/mesh/pieces.h"
+#include "libatlas/charts/segment.h"
 #include "libatlas/core/parallel.h"
 #include "tests/charts/chart_checks.h"
 
@@ -157,6 +160,33 @@ TEST(Pieces, InParallelEndWhenCancelled) {
   const Result<ChartSet> set = make_charts(mesh.view(), {}, context);
   ASSERT_FALSE(set.ok());
   EXPECT_EQ(set.status().code(), ErrorCode::cancelled);
+}
+
+// ChartPreset::best tries several times. Charts that were divided in attempts that were given up do
+// not count.
+TEST(Pieces, SplitsAreThoseOfTheAttemptTaken) {
+  ChartOptions options;
+  options.preset = ChartPreset::best;
+  const Mesh mesh(noisy(torus(48, 24), 0.06, 3));
+  const Result<Topology> topology = build_topology(mesh.view(), {}, {});
+  ASSERT_TRUE(topology.ok());
+  ASSERT_EQ(topology->component_count, 1u);
+  std::size_t fewest = kNoIndex;
+  std::uint64_t wanted = 0, all = 0;
+  for (const double first_seed : {0.0, 0.25, 0.5, 0.75}) {
+    Segmentation attempt = segment(*topology, options, first_seed, {});
+    const FlattenResult flat =
+        flatten_charts({*topology, {}, options, attempt.frames}, attempt.partition, {});
+    all += flat.split_charts();
+    if (flat.charts.size() >= fewest) continue;
+    fewest = flat.charts.size();
+    wanted = flat.split_charts();
+  }
+  ASSERT_GT(all, wanted) << "other attempts divide charts, too";
+  Frames none;
+  const CutCharts cut = cut_pieces({*topology, {}, options, none}, from_to(0, 1), {});
+  EXPECT_EQ(cut.charts.size(), fewest);
+  EXPECT_EQ(cut.split_charts, wanted);
 }
 
 }  // namespace

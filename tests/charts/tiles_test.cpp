@@ -108,6 +108,24 @@ TEST(Tiles, OnceCancelledChartsAreWhatTheyWere) {
   EXPECT_EQ(check_charts(mesh.view(), set).fault, "");
 }
 
+// Of charts across materials, each piece tells the material of its own first triangle.
+TEST(Tiles, TellTheMaterialOfTheirFirstTriangle) {
+  Mesh mesh(grid(200, 5, 40, 1));
+  for (std::size_t t = 0; t < mesh.indices.size() / 3; ++t) {
+    const Vec3f corner = mesh.positions[mesh.indices[3 * t]];
+    mesh.materials.push_back(std::uint32_t(corner.x / 10));
+  }
+  ChartOptions options;
+  options.split_at_materials = false;
+  auto set = make_charts(mesh.view(), options, {});
+  ASSERT_TRUE(set.ok());
+  ASSERT_EQ(set->charts.size(), 1u);
+  EXPECT_EQ(cut(mesh, 10.5, *set), 1u);
+  EXPECT_EQ(set->charts.size(), 4u);
+  for (const Chart& chart : set->charts)
+    EXPECT_EQ(chart.material, mesh.materials[set->chart_triangles[chart.first_triangle]]);
+}
+
 // Each cut of a regular strip runs straight across it.
 TEST(Tiles, AreCutAcross) {
   const Mesh mesh(grid(200, 5, 40, 1));

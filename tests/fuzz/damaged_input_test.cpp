@@ -199,6 +199,27 @@ struct Seed {
   std::string bytes;
 };
 
+// How an input is damaged: so often, by that many changes at most, drawn from this seed.
+struct Damage {
+  int rounds;
+  std::size_t most;
+  unsigned seed;
+};
+
+// Runs a target on damaged inputs until one is at fault. Returns how many it accepted.
+int accepted_of(const Seed& input, const Damage& damage, const auto& target) {
+  std::mt19937 random(damage.seed);
+  int accepted = 0;
+  for (int round = 0; round < damage.rounds; ++round) {
+    const test::FuzzResult result =
+        target(damaged(input.bytes, damage.most, random), input.extension);
+    EXPECT_EQ(result.fault, "") << "round " << round;
+    if (!result.fault.empty()) break;
+    accepted += result.accepted;
+  }
+  return accepted;
+}
+
 class DamagedFiles : public ::testing::TestWithParam<Seed> {};
 
 TEST_P(DamagedFiles, AreSoundUndamaged) {
@@ -209,48 +230,19 @@ TEST_P(DamagedFiles, AreSoundUndamaged) {
 }
 
 TEST_P(DamagedFiles, AreReadOrRefused) {
-  std::mt19937 random(1);
-  int accepted = 0;
-  for (int round = 0; round < 1000; ++round) {
-    const Input bytes = damaged(GetParam().bytes, 4, random);
-    const test::FuzzResult result = test::fuzz_reader(bytes, GetParam().extension);
-    ASSERT_EQ(result.fault, "") << "round " << round;
-    accepted += result.accepted;
-  }
-  EXPECT_GT(accepted, 20);
+  EXPECT_GT(accepted_of(GetParam(), {1000, 4, 1}, test::fuzz_reader), 20);
 }
 
 TEST_P(DamagedFiles, AreShownByThePlayer) {
-  std::mt19937 random(4);
-  int accepted = 0;
-  for (int round = 0; round < 100; ++round) {
-    const Input bytes = damaged(GetParam().bytes, 4, random);
-    const test::FuzzResult result = test::fuzz_view(bytes, GetParam().extension);
-    ASSERT_EQ(result.fault, "") << "round " << round;
-    accepted += result.accepted;
-  }
-  EXPECT_GT(accepted, 2);
+  EXPECT_GT(accepted_of(GetParam(), {100, 4, 4}, test::fuzz_view), 2);
 }
 
 TEST_P(DamagedFiles, AreRepackedOrRefused) {
-  std::mt19937 random(5);
-  for (int round = 0; round < 100; ++round) {
-    const Input bytes = damaged(GetParam().bytes, 2, random);
-    const test::FuzzResult result = test::fuzz_repack(bytes, GetParam().extension);
-    ASSERT_EQ(result.fault, "") << "round " << round;
-  }
+  accepted_of(GetParam(), {100, 2, 5}, test::fuzz_repack);
 }
 
 TEST_P(DamagedFiles, AreExportedAndReadAgain) {
-  std::mt19937 random(2);
-  int accepted = 0;
-  for (int round = 0; round < 40; ++round) {
-    const Input bytes = damaged(GetParam().bytes, 1, random);
-    const test::FuzzResult result = test::fuzz_export(bytes, GetParam().extension);
-    ASSERT_EQ(result.fault, "") << "round " << round;
-    accepted += result.accepted;
-  }
-  EXPECT_GT(accepted, 4);
+  EXPECT_GT(accepted_of(GetParam(), {40, 1, 2}, test::fuzz_export), 4);
 }
 
 INSTANTIATE_TEST_SUITE_P(Formats, DamagedFiles,
@@ -278,30 +270,16 @@ const std::string kLight = R"(1 2 3
 2
 )";
 
-int accepted_of(const std::string& seed, const auto& target, int rounds = 500) {
-  std::mt19937 random(6);
-  int accepted = 0;
-  for (int round = 0; round < rounds; ++round) {
-    const test::FuzzResult result = target(damaged(seed, 3, random));
-    EXPECT_EQ(result.fault, "") << "round " << round;
-    if (!result.fault.empty()) break;
-    accepted += result.accepted;
-  }
-  return accepted;
-}
+constexpr Damage kOfOthers{500, 3, 6};
 
 TEST(DamagedLists, OfRectanglesArePackedOrRefused) {
-  const auto csv = [](const Input& bytes) { return test::fuzz_rects(bytes, "csv"); };
-  const auto list = [](const Input& bytes) { return test::fuzz_rects(bytes, "json"); };
-  EXPECT_GT(accepted_of(kCsv, csv), 20);
-  EXPECT_GT(accepted_of(kJson, list), 5);
+  EXPECT_GT(accepted_of({"csv", kCsv}, kOfOthers, test::fuzz_rects), 20);
+  EXPECT_GT(accepted_of({"json", kJson}, kOfOthers, test::fuzz_rects), 5);
 }
 
 TEST(DamagedLists, OfIlluminationAreReadOrRefused) {
-  const auto light = [](const Input& bytes) { return test::fuzz_illumination(bytes, "txt"); };
-  const auto ply = [](const Input& bytes) { return test::fuzz_illumination(bytes, "ply"); };
-  EXPECT_GT(accepted_of(kLight, light), 20);
-  EXPECT_GT(accepted_of(kPly, ply), 20);
+  EXPECT_GT(accepted_of({"txt", kLight}, kOfOthers, test::fuzz_illumination), 20);
+  EXPECT_GT(accepted_of({"ply", kPly}, kOfOthers, test::fuzz_illumination), 20);
 }
 
 // What fuzzers found in atlas-pack's lists: a number that no double holds.
@@ -346,8 +324,7 @@ TEST(DamagedImages, AreReadOrRefused) {
         test::fuzz_image(Input(seed.bytes.begin(), seed.bytes.end()), seed.extension);
     EXPECT_EQ(whole.fault, "") << seed.extension;
     EXPECT_TRUE(whole.accepted) << seed.extension;
-    const auto read = [&](const Input& bytes) { return test::fuzz_image(bytes, seed.extension); };
-    EXPECT_GT(accepted_of(seed.bytes, read, 200), 5) << seed.extension;
+    EXPECT_GT(accepted_of(seed, {200, 3, 6}, test::fuzz_image), 5) << seed.extension;
   }
 }
 
@@ -355,8 +332,7 @@ TEST(DamagedImages, ArePackedOrRefused) {
   const test::IgnoreLeaks readers;  // OpenImageIO never frees the texts of its errors
   for (const Seed& seed : images()) {
     if (seed.extension == std::string("exr") || seed.extension == std::string("hdr")) continue;
-    const auto pack = [&](const Input& bytes) { return test::fuzz_sprites(bytes, seed.extension); };
-    EXPECT_GT(accepted_of(seed.bytes, pack, 100), 5) << seed.extension;
+    EXPECT_GT(accepted_of(seed, {100, 3, 6}, test::fuzz_sprites), 5) << seed.extension;
   }
 }
 

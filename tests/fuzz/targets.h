@@ -24,8 +24,8 @@ FuzzResult fuzz_reader(FuzzBytes bytes, const std::string& extension);
 // sound scene or an error.
 FuzzResult fuzz_illumination(FuzzBytes bytes, const std::string& extension);
 
-// Reads them as an image file with this extension ("png"), to bytes, to floats and as a texture, and
-// as an image that a scene holds. Sound texels must come back, or an error of one line.
+// Reads them as an image file with this extension ("png"), to bytes, to floats and as a texture,
+// and as an image that a scene holds. Sound texels must come back, or an error of one line.
 FuzzResult fuzz_image(FuzzBytes bytes, const std::string& extension);
 
 // Packs two such files as atlas-pack does, with options that their sum chooses. The pages must have

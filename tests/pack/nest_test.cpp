@@ -102,6 +102,22 @@ TEST(NestSearch, APieceAloneIsPutDownOnceInEachDirection) {
   }
 }
 
+// Layouts that are given up as too high leave pieces over, and never count as the lowest.
+TEST(NestSearch, NoLayoutThatWasGivenUpIsTakenOfAVeryHighStrip) {
+  std::vector<ChartOutline> bars;
+  for (const double length : {600'000, 700'000, 900'000})
+    bars.push_back(outline_of({test::box(0.5, length), {}}));
+  PieceOptions options;
+  options.directions = 1;
+  const std::vector<Piece> pieces = make_pieces(bars, options, {});
+  NestSearchOptions search;
+  search.width = 2 * pieces[0].masks[0].width;
+  search.layouts = 6;
+  const NestSearchResult found = search_nest(pieces, plan_by_size(pieces), search, {});
+  EXPECT_GT(found.nest.used_height, 1'000'000);
+  EXPECT_TRUE(found.nest.left_over.empty());
+}
+
 std::vector<Vec2d> ring(double radius, double width) {
   std::vector<Vec2d> triangles;
   constexpr int kParts = 48;

@@ -123,13 +123,13 @@ TEST(Pairs, HaveMasksThatDoNotOverlap) {
       options.cell = cell;
       options.directions = 8;
       const std::vector<double> factors{1.5, 1.5};
-      const PairPiece pair = make_pair_piece({outlines, factors}, pairs[0], options);
+      const JoinedPiece pair = make_pair_piece({outlines, factors}, pairs[0], options);
       ASSERT_EQ(pair.piece.masks.size(), 8u);
       for (std::uint32_t k = 0; k < 8; ++k) {
         const Mask& mask = pair.piece.masks[k];
         std::vector<test::PlacedShape> placed;
         for (int c = 0; c < 2; ++c) {
-          const PairPart& part = pair.parts[k][std::size_t(c)];
+          const JoinedPart& part = pair.parts[k][std::size_t(c)];
           EXPECT_GE(part.cells.x, 0);
           EXPECT_GE(part.cells.y, 0);
           EXPECT_LE(part.cells.right(), mask.width);

@@ -191,6 +191,26 @@ TEST(Advice, AGivenExposureCountsLikeAGivenWhite) {
   EXPECT_TRUE(advice_on(report, options).empty());
 }
 
+// Rooms of 10 to 1000 lx beside a terrace in the sun.
+TEST(Advice, RoomsThatTheMeasuredWhiteLeavesBlackAreNamed) {
+  ExportReport report = report_of(100, 8, 1024);
+  report.luminance.log_average = 900;
+  report.luminance.percentile99 = report.exposure_white = 48000;
+  report.tone.scale = 1 / 48000.0F;
+  report.luminance.median = 100;
+  EXPECT_TRUE(advice_on(report, {}).empty());
+  report.luminance.median = 18;
+  const std::string black = "more than half of what is seen is shown black: its median is 18, ";
+  EXPECT_TRUE(holds(advice_on(report, {}), black + "and white begins at 4.8e+04"));
+  EXPECT_TRUE(holds(advice_on(report, {}), "(ToneOptions::op reinhard-devlin shows dark rooms"));
+  EXPECT_TRUE(holds(advice_on(report, {}), "ToneOptions::white 180 the dark alone)"));
+  ExportOptions options;
+  options.tone.white = 48000;
+  EXPECT_TRUE(holds(advice_on(report, options), black));
+  options.quantity = Quantity::colour;  // has no other white
+  EXPECT_TRUE(advice_on(report, options).empty());
+}
+
 TEST(Advice, NoiseThatShattersChartsIsNamed) {
   ExportReport report = report_of(100, 1, 1024);
   report.noise = {100000, 60};

@@ -355,47 +355,6 @@ TEST(Export, RefusesOptionsOutOfRange) {
   EXPECT_TRUE(fs::is_empty(folder.path()));
 }
 
-TEST(Plan, NamesWhatASceneDoesNotNeed) {
-  LoadedScene dark = lit_room(4);
-  dark.scene.illumination.assign(dark.scene.positions.size(), Vec3f{});
-  ExportOptions options;
-  options.target = "w.wrl";
-  const ExportPlan plan = make_plan(dark.scene, options);
-  EXPECT_FALSE(plan.runs("reflectance"));  // the scene has no textures
-  EXPECT_TRUE(plan.runs("baking"));
-  EXPECT_DOUBLE_EQ(plan.unlit_share, 1);
-  options.threshold = 0;
-  EXPECT_FALSE(make_plan(dark.scene, options).runs("downsizing"));
-  dark.scene.illumination.clear();
-  EXPECT_FALSE(make_plan(dark.scene, options).runs("baking"));
-}
-
-// A square metre with a texture that is finer than the texel, and one without a texture.
-TEST(Plan, CountsTheTexelsThatTexturesAskFor) {
-  const TempFolder folder;
-  LoadedScene loaded = lit_scene(grid(2, 2));
-  Scene& scene = loaded.scene;
-  scene.metres_per_unit = 1;
-  ExportOptions options = small_pages(folder);
-  options.atlas_size = 1024;
-  options.texel_metres = 0.01;
-  EXPECT_NEAR(make_plan(scene, options).estimated_texels, 1e4, 1);
-  scene.textures.push_back({"", Image8(50, 400, 3, 77)});
-  scene.materials[0].texture = 0;
-  for (const Vec3f& p : scene.positions) scene.texcoords.push_back({p.x, p.y});
-  scene.texcoord_indices = scene.indices;
-  const ExportPlan plan = make_plan(scene, options);
-  EXPECT_NEAR(plan.estimated_texels, 2e4, 2);
-  const auto report = export_world(loaded, options, {}, {});
-  ASSERT_TRUE(report.ok()) << report.status().message();
-  EXPECT_NEAR(double(report->full_texels), plan.estimated_texels, 300);
-  options.texel_metres = 0;  // 1 mm, or 1.5 times a texture of 2000 texels per metre
-  scene.textures[0].image = Image8(2000, 2000, 3, 77);
-  EXPECT_NEAR(make_plan(scene, options).estimated_texels, 9e6, 900);
-  options.follow_textures = false;
-  EXPECT_NEAR(make_plan(scene, options).estimated_texels, 1e6, 100);
-}
-
 // Of two equal rooms, a world opens in the one that is lit.
 TEST(Export, OpensInALitRoom) {
   for (const bool second_lit : {false, true}) {

@@ -7,18 +7,11 @@
 
 #include "libatlas/core/clock.h"
 #include "libatlas/pipeline/unwrap.h"
-#include "tests/support/shapes.h"
+#include "tests/pipeline/shape_view.h"
 #include "tests/support/slowness.h"
 
 namespace atlas::test {
 namespace {
-
-MeshView view_of(const Shape& shape) {
-  MeshView view;
-  view.positions = shape.positions;
-  view.indices = shape.indices;
-  return view;
-}
 
 UnwrappedMesh unwrap(const Shape& shape, UnwrapOptions options, double min_fill = 0.72) {
   options.charts.min_fill = min_fill;

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "libatlas/core/atomic_file.h"
+#include "libatlas/pipeline/export_world.h"
 #include "tests/pipeline/lit_scene.h"
 #include "tests/scene/temp_folder.h"
 #include "tests/support/shapes.h"
@@ -195,6 +196,50 @@ TEST(Plan, ItsReportDescribesTheScene) {
   EXPECT_EQ(report.metres_per_unit, 0.5);
   EXPECT_FALSE(report.defects.empty());
   EXPECT_DOUBLE_EQ(report.plan.surface_area_m2, 1);
+}
+
+TEST(Plan, NamesWhatASceneDoesNotNeed) {
+  LoadedScene dark = lit_room(4);
+  dark.scene.illumination.assign(dark.scene.positions.size(), Vec3f{});
+  ExportOptions options;
+  options.target = "w.wrl";
+  const ExportPlan plan = make_plan(dark.scene, options);
+  EXPECT_FALSE(plan.runs("reflectance"));  // the scene has no textures
+  EXPECT_TRUE(plan.runs("baking"));
+  EXPECT_DOUBLE_EQ(plan.unlit_share, 1);
+  options.threshold = 0;
+  EXPECT_FALSE(make_plan(dark.scene, options).runs("downsizing"));
+  dark.scene.illumination.clear();
+  EXPECT_FALSE(make_plan(dark.scene, options).runs("baking"));
+}
+
+// A square metre with a texture that is finer than the texel, and one without a texture.
+TEST(Plan, CountsTheTexelsThatTexturesAskFor) {
+  const TempFolder folder;
+  LoadedScene loaded = lit_scene(grid(2, 2));
+  Scene& scene = loaded.scene;
+  scene.metres_per_unit = 1;
+  ExportOptions options;
+  options.target = folder / "world.obj";
+  options.atlases = 3;
+  options.atlas_size = 1024;
+  options.simplify = false;
+  options.texel_metres = 0.01;
+  EXPECT_NEAR(make_plan(scene, options).estimated_texels, 1e4, 1);
+  scene.textures.push_back({"", Image8(50, 400, 3, 77)});
+  scene.materials[0].texture = 0;
+  for (const Vec3f& p : scene.positions) scene.texcoords.push_back({p.x, p.y});
+  scene.texcoord_indices = scene.indices;
+  const ExportPlan plan = make_plan(scene, options);
+  EXPECT_NEAR(plan.estimated_texels, 2e4, 2);
+  const auto report = export_world(loaded, options, {}, {});
+  ASSERT_TRUE(report.ok()) << report.status().message();
+  EXPECT_NEAR(double(report->full_texels), plan.estimated_texels, 300);
+  options.texel_metres = 0;  // 1 mm, or 1.5 times a texture of 2000 texels per metre
+  scene.textures[0].image = Image8(2000, 2000, 3, 77);
+  EXPECT_NEAR(make_plan(scene, options).estimated_texels, 9e6, 900);
+  options.follow_textures = false;
+  EXPECT_NEAR(make_plan(scene, options).estimated_texels, 1e6, 100);
 }
 
 }  // namespace

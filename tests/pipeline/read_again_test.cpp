@@ -1,6 +1,8 @@
 // What exports write is read again as it was.
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -145,6 +147,44 @@ TEST(ReadAgain, ASceneWithoutAreaIsNamed) {
   ASSERT_TRUE(report.ok()) << report.status().message();
   ASSERT_EQ(report->advice.size(), 1u);
   EXPECT_NE(report->advice[0].find("no triangle has an area"), std::string::npos);
+}
+
+// The view that a scene's file begins with is that of its world.
+TEST(ReadAgain, WorldsBeginWithTheViewOfTheirScene) {
+  const TempFolder folder;
+  LoadedScene room = lit_room(4);  // 4 x 3 x 2.5, with z up
+  room.scene.origin = {1000, -200, 30};
+  ExportOptions options;
+  options.up = Up::z;
+  options.atlas_size = 256;
+  const auto view_of = [&](const char* name, const FileView& view) {
+    options.target = folder / name;
+    room.view = view;
+    const auto report = export_world(room, options, {}, {});
+    EXPECT_TRUE(report.ok()) << report.status().message();
+    const auto again = read_scene(options.target, {}, {});
+    EXPECT_TRUE(again.ok() && again->view);
+    return again.ok() && again->view ? *again->view : FileView{};
+  };
+  // From inside, and from outside.
+  for (const Vec3d eye : {Vec3d{1001, -198.5, 31}, Vec3d{1010, -190, 33}}) {
+    const FileView read = view_of("w.wrl", {eye, {0.6, 0.8, 0}});
+    EXPECT_NEAR(read.position.x, eye.x, 1e-4);
+    EXPECT_NEAR(read.position.y, eye.y, 1e-4);
+    EXPECT_NEAR(read.position.z, eye.z, 1e-4);
+    EXPECT_NEAR(read.direction.x, 0.6, 1e-5);
+    EXPECT_NEAR(read.direction.y, 0.8, 1e-5);
+    EXPECT_NEAR(read.direction.z, 0, 1e-5);
+    const bool walks = TempFolder::read(folder / "w.wrl").find("\"WALK\"") != std::string::npos;
+    EXPECT_EQ(walks, eye.x < 1004);
+  }
+  // A view straight down has no heading.
+  const FileView chosen = view_of("w.wrl", {{1001, -198.5, 31}, {0, 0, -1}});
+  EXPECT_LT(std::abs(chosen.direction.z), 0.9);
+  // glTF is in metres with y up, so the view is turned with the scene.
+  const FileView turned = view_of("w.glb", {{1001, -198.5, 31}, {0.6, 0.8, 0}});
+  EXPECT_NEAR(turned.direction.x, 0.6, 1e-5);
+  EXPECT_NEAR(turned.direction.z, -0.8, 1e-5);
 }
 
 }  // namespace

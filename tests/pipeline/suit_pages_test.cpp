@@ -6,17 +6,10 @@
 #include <cstddef>
 #include <utility>
 
-#include "tests/support/shapes.h"
+#include "tests/pipeline/shape_view.h"
 
 namespace atlas::test {
 namespace {
-
-MeshView view_of(const Shape& shape) {
-  MeshView view;
-  view.positions = shape.positions;
-  view.indices = shape.indices;
-  return view;
-}
 
 Shape plates(int count) {
   Shape shape = grid(24, 24, 1, 1);

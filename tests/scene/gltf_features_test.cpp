@@ -55,6 +55,32 @@ TEST(Gltf, MatricesAndScenesThatAreNotNamed) {
   }));
 }
 
+// The first perspective camera of the scene that is shown.
+TEST(Gltf, TellsWhereAViewerBegins) {
+  const TempFolder folder;
+  Gltf g;
+  const int positions = g.floats(kSquare, "VEC3", 3);
+  g.single({{"attributes", {{"POSITION", positions}}},
+            {"indices", g.indices(std::vector<std::uint16_t>{0, 1, 2, 0, 2, 3})}});
+  EXPECT_FALSE(load_glb(folder, g)->view);
+  const json lens = {{"yfov", 1}, {"znear", 0.1}};
+  const json plan = {{"xmag", 1}, {"ymag", 1}, {"znear", 0.1}, {"zfar", 9}};
+  g.j["cameras"] = {{{"type", "orthographic"}, {"orthographic", plan}},
+                    {{"type", "perspective"}, {"perspective", lens}}};
+  g.j["nodes"].push_back({{"camera", 1}});  // in no scene
+  g.j["nodes"].push_back({{"camera", 0}});
+  g.j["nodes"].push_back({{"children", {4}}, {"translation", {1, 0, 0}}, {"scale", {2, 2, 2}}});
+  const double half = std::sqrt(0.5);
+  g.j["nodes"].push_back(
+      {{"camera", 1}, {"translation", {0, 3, 0}}, {"rotation", {0, half, 0, half}}});
+  g.j["scenes"][0]["nodes"] = {0, 2, 3};
+  const auto loaded = load_glb(folder, g);
+  ASSERT_TRUE(loaded.ok()) << loaded.status().message();
+  ASSERT_TRUE(loaded->view);
+  EXPECT_EQ(loaded->view->position, (Vec3d{1, 6, 0}));
+  EXPECT_NEAR(loaded->view->direction.x, -1, 1e-6);
+}
+
 // KHR_mesh_quantization: the most negative integer also stands for -1.
 TEST(Gltf, ShortPositionsAreFractions) {
   const TempFolder folder;

@@ -46,6 +46,28 @@ TEST(Vrml, ShapesOfEqualMaterialsShareOne) {
   EXPECT_EQ(scene.materials[5].diffuse, (Vec3f{0.8f, 0.8f, 0.8f}));
 }
 
+// The first Viewpoint is the one that viewers bind.
+TEST(Vrml, TellsWhereAViewerBegins) {
+  const TempFolder folder;
+  const auto view = [&](const std::string& nodes) { return read(folder, nodes + shape(0))->view; };
+  EXPECT_FALSE(view(""));
+  EXPECT_FALSE(view("Switch { choice Viewpoint { } }"));
+  const auto usual = view("DEF v Viewpoint { description \"x\" }");
+  ASSERT_TRUE(usual);
+  EXPECT_EQ(usual->position, (Vec3d{0, 0, 10}));
+  EXPECT_EQ(usual->direction, (Vec3d{0, 0, -1}));
+  const auto placed = view(
+      "WorldInfo { info [ \"origin 100 0 0: to be added\" ] }\n"
+      "Transform { rotation 1 0 0 1.57079632679 scale 2 2 2 children Viewpoint {\n"
+      "position 1 2 3 orientation 0 2 0 1.57079632679 fieldOfView 1 } }\n"
+      "Viewpoint { position 7 7 7 }");
+  ASSERT_TRUE(placed);
+  EXPECT_NEAR(placed->position.x, 102, 1e-9);
+  EXPECT_NEAR(placed->position.y, -6, 1e-9);
+  EXPECT_NEAR(placed->position.z, 4, 1e-9);
+  EXPECT_NEAR(placed->direction.x, -1, 1e-9);
+}
+
 // As in other formats, materials of different names are different ones.
 TEST(Vrml, NamesTellMaterialsApart) {
   const TempFolder folder;

@@ -88,6 +88,38 @@ TEST(LightSeams, PartAFloorBelowAPartitionWhereTheLightJumps) {
   EXPECT_TRUE(two_rooms(0.8, 0.8).seams().edges.empty());
 }
 
+// Two floors of 4 x 4 quads that meet at x = 1, and a wall over `length` there with other vertices.
+LightSeams seams_of_floors(Vec3f wall_from, float length, double texel) {
+  Sheets sheets;
+  sheets.add({0, 0, 0}, {1, 0, 0}, {0, 1, 0}, 4, constant(0.8))
+      .add({1, 0, 0}, {1, 0, 0}, {0, 1, 0}, 4, constant(0.1))
+      .add(wall_from, {0, 0, 2}, {0, length, 0}, 3, constant(0.5));
+  LightSeams seams = sheets.seams(texel);
+  const Scene& scene = sheets.loaded().scene;
+  for (std::uint32_t h = 0; h < seams.edges.size(); ++h) {
+    const std::uint32_t next = h % 3 == 2 ? h - 2 : h + 1;
+    const Vec3f a = scene.positions[scene.indices[h]], b = scene.positions[scene.indices[next]];
+    const bool below = a.x == 1 && b.x == 1 && h < 2 * 32 * 3;
+    if (!below) {
+      EXPECT_EQ(seams.edges[h], 0) << h;
+    }
+  }
+  return seams;
+}
+
+// Modellers let walls stand on floors, or pass through them, with no vertex in common.
+TEST(LightSeams, PartAFloorBelowAWallOfOtherVertices) {
+  EXPECT_NEAR(seams_of_floors({1, 0, 0}, 1, 0.001).length, 1, 1e-6);
+  EXPECT_NEAR(seams_of_floors({1, -0.1f, -0.7f}, 1.3f, 0.001).length, 1, 1e-6);
+  // Only where it stands on most of an edge.
+  EXPECT_NEAR(seams_of_floors({1, -0.1f, 0}, 0.7f, 0.001).length, 0.5, 1e-6);
+  EXPECT_EQ(seams_of_floors({1, 0, 0}, 0.1f, 0.001).length, 0);
+  // A texel aside, the line would still show.
+  EXPECT_NEAR(seams_of_floors({1.004f, 0, 0}, 1, 0.005).length, 1, 1e-6);
+  EXPECT_EQ(seams_of_floors({1.006f, 0, 0}, 1, 0.005).length, 0);
+  EXPECT_EQ(seams_of_floors({1, 0, 0.01f}, 1, 0.005).length, 0);  // hangs above
+}
+
 // Both layers continue at every edge, and nothing stands there.
 TEST(LightSeams, DoNotShatterThinSheets) {
   Sheets sheet;

@@ -11,6 +11,7 @@
 #include "libatlas/exporters/world.h"
 #include "libatlas/image/image_io.h"
 #include "libatlas/view/play.h"
+#include "libatlas/view/start_camera.h"
 #include "tests/view/play_folder.h"
 #include "tests/view/shapes.h"
 
@@ -29,6 +30,24 @@ TEST_F(LoadView, LoadsScenesAndSaysWhatIsWrongWithThem) {
     EXPECT_NE(v.status().message().find(name), std::string::npos);
     EXPECT_EQ(v.status().message().find('\n'), std::string::npos);
   }
+}
+
+TEST_F(LoadView, AWorldBeginsAtItsViewpoint) {
+  std::ofstream(path_ / "a.wrl")
+      << "#VRML V2.0 utf8\nViewpoint { position 1001 2 3 orientation 1 0 0 0.6435011087932844 }\n"
+         "Shape { geometry IndexedFaceSet { coordIndex [ 0 1 2 -1 ]\n"
+         "coord Coordinate { point [ 1000 0 0, 1004 0 0, 1000 4 0 ] } } }\n";
+  const Result<ViewScene> view = load_view(path_ / "a.wrl", {}, {});
+  ASSERT_TRUE(view.ok()) << view.status().message();
+  const Camera camera = start_camera(*view, {0, 1, 0}, 75);
+  EXPECT_EQ(camera.eye.x + view->origin.x, 1001);
+  EXPECT_EQ(camera.eye.y + view->origin.y, 2);
+  EXPECT_EQ(camera.eye.z + view->origin.z, 3);
+  const double ahead = camera.eye.z - camera.target.z;
+  EXPECT_GT(ahead, 0);
+  EXPECT_NEAR((camera.target.y - camera.eye.y) / ahead, 0.75, 1e-9);
+  EXPECT_EQ(camera.up, (Vec3d{0, 1, 0}));
+  EXPECT_EQ(camera.fov_degrees, 75);
 }
 
 TEST_F(LoadView, SaysWhichMaterialsStayDark) {

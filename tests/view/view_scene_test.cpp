@@ -2,16 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <glm/geometric.hpp>
 #include <glm/trigonometric.hpp>
 #include <set>
 #include <tuple>
 
-#include "libatlas/core/glm_bridge.h"
 #include "libatlas/scene/check_scene.h"
-#include "libatlas/view/start_camera.h"
 #include "libatlas/view/view_scene.h"
-#include "tests/exporters/boxes.h"
 #include "tests/view/shapes.h"
 
 namespace atlas::testing {
@@ -309,105 +305,6 @@ TEST(ViewScene, DegenerateTrianglesGiveFiniteNormals) {
   add_quad(s, {{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {3, 0, 0}});
   const ViewScene v = *make_view_scene(s, {});
   for (const Vec3f& n : v.normals) EXPECT_NEAR(std::hypot(n.x, n.y, n.z), 1, 1e-5);
-}
-
-TEST(Camera, LooksAndTurnsWhereTheViewIsVertical) {
-  for (double down : {-5.0, 5.0}) {
-    Camera camera;
-    camera.eye = {0, down, 0};
-    for (double value : view_projection(camera, 1.5)) EXPECT_TRUE(std::isfinite(value));
-    for (const Vec3d& c : view_corners(camera, 1.5, 10))
-      EXPECT_TRUE(std::isfinite(c.x + c.y + c.z));
-    fly(camera, {0.1, 0.1, 0.1}, 3, 3);
-    EXPECT_TRUE(std::isfinite(camera.eye.x + camera.eye.y + camera.eye.z));
-    EXPECT_NEAR(std::hypot(camera.target.x - camera.eye.x, camera.target.y - camera.eye.y,
-                           camera.target.z - camera.eye.z),
-                5, 1e-9);
-  }
-}
-
-TEST(StartCamera, StandsInARoomAndBeforeAThing) {
-  const auto inside = [](const ViewScene& v, const Vec3d& p) {
-    const Box3& b = v.bounds;
-    return p.x > b.low.x && p.y > b.low.y && p.z > b.low.z && p.x < b.high.x && p.y < b.high.y &&
-           p.z < b.high.z;
-  };
-  Scene ball;
-  add_sphere(ball, {3, 2, 1}, 1, 12);
-  const ViewScene hall = *make_view_scene(room(), {}), thing = *make_view_scene(ball, {});
-  const Camera visitor = start_camera(hall, {0, 1, 0}), beholder = start_camera(thing, {0, 1, 0});
-  EXPECT_TRUE(inside(hall, visitor.eye));
-  EXPECT_FALSE(inside(thing, beholder.eye));
-  EXPECT_FALSE(inside(hall, start_camera(hall, {1, 0, 0}).eye)) << "no floor is looked for";
-  for (const auto& [v, camera] : {std::pair{&hall, visitor}, std::pair{&thing, beholder}}) {
-    EXPECT_GT(camera.near_plane, 0);
-    for (const Vec3f& p : v->positions)
-      EXPECT_LE(std::hypot(p.x - camera.eye.x, p.y - camera.eye.y, p.z - camera.eye.z),
-                camera.far_plane);
-  }
-}
-
-TEST(StartCamera, AThingFillsTheViewWhateverItsFieldIs) {
-  Scene ball;
-  add_sphere(ball, {3, 2, 1}, 1, 12);
-  const ViewScene thing = *make_view_scene(ball, {});
-  for (const double fov : {1.0, 20.0, 60.0, 110.0, 170.0}) {
-    const Camera camera = start_camera(thing, {0, 1, 0}, fov);
-    EXPECT_EQ(camera.fov_degrees, fov);
-    const glm::dvec3 eye = to_glm(camera.eye), axis = glm::normalize(to_glm(camera.target) - eye);
-    double widest = 0;  // distance from the image's centre, relative to that of its edge
-    for (const Vec3f& p : thing.positions) {
-      const double cosine = glm::dot(axis, glm::normalize(to_dvec(p) - eye));
-      widest = std::max(widest, glm::degrees(std::acos(std::min(cosine, 1.0))) / (fov / 2));
-    }
-    EXPECT_LT(widest, 1) << fov;
-    EXPECT_GT(widest, 0.35) << fov;
-    EXPECT_GT(camera.near_plane, 0);
-  }
-}
-
-TEST(StartCamera, TheEyeIsAsHighInAnyUnit) {
-  const double eye = start_camera(*make_view_scene(room(), {}), {0, 1, 0}).eye.y;
-  for (const float units : {100.0f, 1000.0f, 0.001f}) {
-    Scene scene = room();
-    for (Vec3f& p : scene.positions) p = {p.x * units, p.y * units, p.z * units};
-    scene.metres_per_unit = 1 / double(units);
-    EXPECT_NEAR(start_camera(*make_view_scene(scene, {}), {0, 1, 0}).eye.y / units, eye, 1e-3);
-  }
-}
-
-// The light is at the vertices, or on pages, the upper halves of which are white.
-TEST(StartCamera, StandsInALitRoom) {
-  for (const bool second_lit : {false, true}) {
-    for (const bool pages : {false, true}) {
-      test::Triangles rooms;
-      test::add_box(rooms, {0, 0, 0}, {5, 4, 3}, true);
-      test::add_box(rooms, {6, 0, 0}, {11, 4, 3}, true);
-      Scene scene;
-      scene.positions = rooms.positions;
-      scene.indices = rooms.indices;
-      if (pages) {
-        scene.textures.resize(1);
-        scene.textures[0].image = Image8(4, 4, 3);
-        std::fill_n(scene.textures[0].image.at(0, 2), 24, std::uint8_t(255));
-        scene.materials.resize(1);
-        scene.materials[0].texture = 0;
-        scene.materials[0].unlit = true;
-      }
-      for (std::size_t v = 0; v < 16; ++v) {
-        const bool lit = (v >= 8) == second_lit;
-        if (pages) {
-          scene.texcoords.push_back({0.5f, lit ? 0.8f : 0.2f});
-        } else {
-          scene.illumination.push_back(lit ? Vec3f{700, 700, 700} : Vec3f{0, 0, 0});
-        }
-      }
-      if (pages) scene.texcoord_indices = scene.indices;
-      ASSERT_TRUE(complete_scene(scene).ok());
-      const Camera camera = start_camera(*make_view_scene(scene, {}), {0, 0, 1});
-      EXPECT_EQ(camera.eye.x > 5.5, second_lit) << pages << ' ' << camera.eye.x;
-    }
-  }
 }
 
 TEST(ViewScene, ASceneWithoutTrianglesIsSaidToBeOne) {

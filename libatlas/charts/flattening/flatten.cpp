@@ -54,7 +54,7 @@ void fit_scratch(std::size_t triangles, ChartScratch& scratch) {
 class Flattener {
  public:
   Flattener(const FlattenInput& input, Partition& partition)
-      : input_(input), partition_(partition) {}
+      : input_(input), partition_(partition), splits_(input.topology.component_count) {}
 
   void run(const Context& context) {
     partition_.local.resize(partition_.chart.size());
@@ -93,7 +93,7 @@ class Flattener {
       result.timing.flips_cpu += scratch->workspace.timing.flips;
       result.timing.overlaps_cpu += scratch->workspace.timing.overlaps;
     }
-    result.split_charts = split_;
+    result.splits = std::move(splits_);
     for (std::size_t k = 0; k < charts_.size(); ++k) {
       flats_[k].triangles = std::move(charts_[k].triangles);
       flats_[k].fragment = charts_[k].fragment || input_.options.cone_degrees > 0;
@@ -188,7 +188,7 @@ class Flattener {
         continue;
       }
       if (remove(done[i], *failures[i])) continue;
-      split_ += failures[i]->failed;
+      splits_[input_.topology.component[charts_[done[i]].triangles.front()]] += failures[i]->failed;
       divide(done[i], failures[i]->parts);
     }
     straighten_parts(context);
@@ -359,9 +359,9 @@ class Flattener {
   std::vector<State> charts_;
   std::vector<FlatChart> flats_;  // results by chart; triangles are filled in at the end
   std::vector<std::uint32_t> todo_, moved_;
-  std::vector<std::uint32_t> parts_;  // parts of charts that were divided in this round
-  std::vector<std::uint32_t> grown_;  // charts that wait until no more triangles can arrive
-  std::uint64_t split_ = 0;
+  std::vector<std::uint32_t> parts_;   // parts of charts that were divided in this round
+  std::vector<std::uint32_t> grown_;   // charts that wait until no more triangles can arrive
+  std::vector<std::uint32_t> splits_;  // one per piece: charts that were divided
 };
 
 }  // namespace

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstdint>
+#include <numeric>
 #include <span>
 #include <vector>
 
@@ -47,9 +48,13 @@ struct FlattenInput {
 };
 
 struct FlattenResult {
-  std::vector<FlatChart> charts;   // ordered by first triangle
-  std::uint64_t split_charts = 0;  // charts that failed and were divided
-  ChartSet::Timing timing;         // the parts of parameterization so far
+  std::vector<FlatChart> charts;      // ordered by first triangle
+  std::vector<std::uint32_t> splits;  // one per piece: charts that failed and were divided
+  ChartSet::Timing timing;            // the parts of parameterization so far
+
+  std::uint64_t split_charts() const {
+    return std::accumulate(splits.begin(), splits.end(), std::uint64_t{0});
+  }
 };
 
 // Adds the parts of parameterization, but not the two totals, to `sum`.
