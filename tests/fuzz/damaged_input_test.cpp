@@ -270,16 +270,16 @@ const std::string kLight = R"(1 2 3
 2
 )";
 
-constexpr Damage kOfOthers{500, 3, 6};
+constexpr Damage kOfLists{500, 3, 6};
 
 TEST(DamagedLists, OfRectanglesArePackedOrRefused) {
-  EXPECT_GT(accepted_of({"csv", kCsv}, kOfOthers, test::fuzz_rects), 20);
-  EXPECT_GT(accepted_of({"json", kJson}, kOfOthers, test::fuzz_rects), 5);
+  EXPECT_GT(accepted_of({"csv", kCsv}, kOfLists, test::fuzz_rects), 20);
+  EXPECT_GT(accepted_of({"json", kJson}, kOfLists, test::fuzz_rects), 5);
 }
 
 TEST(DamagedLists, OfIlluminationAreReadOrRefused) {
-  EXPECT_GT(accepted_of({"txt", kLight}, kOfOthers, test::fuzz_illumination), 20);
-  EXPECT_GT(accepted_of({"ply", kPly}, kOfOthers, test::fuzz_illumination), 20);
+  EXPECT_GT(accepted_of({"txt", kLight}, kOfLists, test::fuzz_illumination), 20);
+  EXPECT_GT(accepted_of({"ply", kPly}, kOfLists, test::fuzz_illumination), 20);
 }
 
 // What fuzzers found in atlas-pack's lists: a number that no double holds.
