@@ -19,8 +19,6 @@ constexpr int kDirections = 24;
 constexpr std::size_t kEdges = 6;
 // Cells along a chart's largest extent while a plan is made.
 constexpr double kCells = 48;
-// A chart is kept clear of this many before it.
-constexpr std::size_t kNear = 4;
 
 // Returns the least distance at which mask b, dy cells above a, lies free of a when it is pushed in
 // from the right; nothing if they share no row.
@@ -215,9 +213,9 @@ std::vector<JoinedPiece> make_row_pieces(const ScaledCharts& charts, const RowPl
     const auto rise =
         static_cast<std::int32_t>(std::lround(odd ? plan.rise * factor / options.cell : 0));
     m.part.cells = {0, rise, m.mask.width, m.mask.height};
-    for (std::size_t i = members.size() - std::min(members.size(), kNear); i < members.size();
-         ++i) {
+    for (std::size_t i = members.size(); i-- > 0;) {
       const Rect& before = members[i].part.cells;
+      if (before.right() <= m.part.cells.x) continue;
       const auto free = push_in(members[i].mask, m.mask, rise - before.y);
       if (free) m.part.cells.x = std::max(m.part.cells.x, before.x + *free);
     }
