@@ -11,6 +11,7 @@
 #include "libatlas/core/atomic_file.h"
 #include "libatlas/core/clock.h"
 #include "libatlas/core/parallel.h"
+#include "libatlas/core/progress.h"
 #include "libatlas/image/image_io.h"
 #include "libatlas/pipeline/advice.h"
 #include "libatlas/pipeline/assemble_world.h"
@@ -19,6 +20,7 @@
 #include "libatlas/pipeline/layout_options.h"
 #include "libatlas/pipeline/least_room.h"
 #include "libatlas/pipeline/longest_sides.h"
+#include "libatlas/pipeline/more_mip_levels.h"
 #include "libatlas/pipeline/page_layout.h"
 #include "libatlas/pipeline/part_gaps.h"
 #include "libatlas/pipeline/stage_recorder.h"
@@ -228,7 +230,7 @@ class Export {
     return {};
   }
 
-  // Given charts keep their borders.
+  // Given charts keep their borders. Raises report_.mip_levels.
   Result<PageLayout> lay_out_lit(const LayoutOptions& options, const Context& context) {
     if (!options_.charts.keep_uv_charts) {
       SizedCharts sized{std::move(charts_), std::move(densities_), std::move(full_densities_)};
@@ -240,7 +242,16 @@ class Export {
       if (!cut.ok()) return cut.status();
       report_charts();
     }
-    return lay_out_pages(charts_, densities_, options, context);
+    const double first = options_.more_mip_levels ? kFirstLayout : 1;
+    Result<PageLayout> layout =
+        lay_out_pages(charts_, densities_, options, part_of_stage(context, "packing", 0, first));
+    if (!layout.ok() || !options_.more_mip_levels) return layout;
+    Result<GuardedLayout> guarded =
+        guard_more_levels({charts_, densities_}, options, {std::move(*layout), options_.mip_levels},
+                          part_of_stage(context, "packing", first, 1));
+    if (!guarded.ok()) return guarded.status();
+    report_.mip_levels = guarded->mip_levels;
+    return std::move(guarded->layout);
   }
 
   // Without light, no texel density is required, so pages are filled as well as packing can.
@@ -265,6 +276,7 @@ class Export {
     const Context& context = record_.begin("packing");
     const std::size_t uncut = charts_.charts.size();
     const LayoutOptions layout = layout_options(charts_, options_, plan_.bake);
+    report_.mip_levels = plan_.bake ? options_.mip_levels : options_.plain_mip_levels;
     Result<PageLayout> laid =
         plan_.bake ? lay_out_lit(layout, context) : lay_out_plain(layout, context);
     if (!laid.ok()) return laid.status();
@@ -299,7 +311,8 @@ class Export {
 
   Status bake() {
     const Context& context = record_.begin("baking");
-    Result<BakedPages> baked = bake_pages({*light_, layout_, options_}, files_, context);
+    Result<BakedPages> baked =
+        bake_pages({*light_, layout_, options_, report_.mip_levels}, files_, context);
     if (!baked.ok()) return files_.told_by_target(baked.status());
     report_.pages = baked->pages;
     image_sources_ = std::move(baked->image_sources);
@@ -368,6 +381,8 @@ class Export {
     record_.finish(std::move(*written));
     return {};
   }
+
+  static constexpr double kFirstLayout = 0.7;  // share of packing's progress
 
   const Scene& scene_;
   const std::optional<FileView> view_;
