@@ -107,7 +107,8 @@ struct FitResult {
   // in texels.
   GroupingResult grouping = {};
   std::uint32_t packings = 0;  // number of full packings tried
-  // Number of layouts of outlines on one page that were tried in total.
+  // Number of layouts of outlines on one page that were tried. Those on pages of other sizes, and
+  // those of ways of packing that gained nothing, are not all counted.
   std::uint64_t layouts = 0;
 };
 

@@ -43,6 +43,9 @@ Vec3f point(const Scene& s, std::size_t t, const float b[3]) {
   return p;
 }
 
+// What logarithms are taken of at least, since the luma of denormal light may be 0.
+constexpr float kLeastLuma = 1e-37f;
+
 struct Collector {
   LuminanceStatistics out;
   std::vector<SurfaceSample> samples;  // those of finite luminance
@@ -68,7 +71,7 @@ struct Collector {
     lumas.push_back(y);
     sum += y;
     for (int k = 0; k < 3; ++k) rgb[k] += v[k];
-    log_sum += std::log(std::max(y, 1e-37f));
+    log_sum += std::log(std::max(y, kLeastLuma));
   }
 
   void finish(double area_per_sample) {
@@ -84,8 +87,8 @@ struct Collector {
     out.percentile99 = percentile(values, 0.99);
     out.percentile999 = percentile(values, 0.999);
     out.median = percentile(values, 0.5);
-    out.minimum_log = std::log(double(percentile(lumas, 0.01)));
-    out.maximum_log = std::log(double(percentile(lumas, 0.99)));
+    out.minimum_log = std::log(double(std::max(percentile(lumas, 0.01), kLeastLuma)));
+    out.maximum_log = std::log(double(std::max(percentile(lumas, 0.99), kLeastLuma)));
     const auto count = static_cast<double>(n);
     out.mean = sum / count;
     out.log_average = std::exp(log_sum / count);

@@ -2,7 +2,10 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <atomic>
+#include <chrono>
 #include <cmath>
+#include <thread>
 #include <vector>
 
 #include "libatlas/charts/cells/cells.h"
@@ -111,6 +114,36 @@ TEST(Cells, AreBoundedInNumberWhereASheetUnrolls) {
   const Topology topology = topology_of(corrugated_sheet(1600));
   EXPECT_LE(grow_cells({topology, plan_cells(topology, {})}, {}, {}).count,
             CellOptions{}.max_cells_per_piece);
+}
+
+// Each row of the grid is a region, so grains beyond its borders have no seed until each row has
+// one.
+TEST(Cells, AreGivenUpWhenCancelledAtAnyTime) {
+  using Clock = std::chrono::steady_clock;
+  constexpr std::uint32_t kAcross = 16;
+  const Topology topology = topology_of(grid(kAcross, 4000));
+  const CellPlan plan = plan_cells(topology, {});
+  Regions rows;
+  for (std::uint32_t t = 0; t < topology.triangle_count(); ++t) {
+    rows.of_triangle.push_back(t / (2 * kAcross));
+  }
+  const Clock::time_point start = Clock::now();
+  EXPECT_GE(grow_cells({topology, plan, &rows}, {}, {}).count, 4000u);
+  const Clock::duration whole = Clock::now() - start;
+  constexpr int kTimes = 24;
+  for (int i = 0; i < kTimes; ++i) {
+    std::atomic<bool> cancel{false};
+    Context context;
+    context.cancel = &cancel;
+    std::thread other([&] {
+      std::this_thread::sleep_for(whole * i / kTimes);
+      cancel = true;
+    });
+    const Cells cells = grow_cells({topology, plan, &rows}, {}, context);
+    const bool given_up = cells.of_triangle.empty();
+    other.join();
+    EXPECT_TRUE(given_up || cells.count >= 4000) << i;
+  }
 }
 
 TEST(Teeth, ARaggedBorderIsDrawnStraighter) {

@@ -2,7 +2,9 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <vector>
 
 #include "libatlas/charts/merging/coarse.h"
 #include "libatlas/charts/merging/unroll.h"
@@ -123,6 +125,40 @@ TEST(Unroll, CellsOfACylinderAndOfASphere) {
     EXPECT_GE(flat, 0.6 * rim);  // rims are zigzags of edges
   }
   for (const CoarseCell& cell : coarse_of(sphere(300, 150)).cells) EXPECT_FALSE(cell.unrolls);
+}
+
+// A sheet of three parts side by side: bent, plane, and slightly rough. Two cells cover the bent
+// part, one the plane part, and the rough one has a cell for each triangle. The vertices that the
+// plane and the rough cells share are curved. Two cells touch the plane one, and it is tried once
+// all the same.
+TEST(Unroll, APlaneCellBesideCurvedVerticesDoesNotBecomeFlatWhenTriedAgain) {
+  constexpr int kWide = 60, kHigh = 20, kBent = 20, kRough = 40;
+  Shape sheet = grid(kWide, kHigh, kWide, kHigh);
+  std::vector<int> column;
+  for (Vec3f& p : sheet.positions) {
+    column.push_back(static_cast<int>(std::lround(p.x)));
+    if (column.back() < kBent) {
+      const double angle = double(kBent - column.back()) / kBent;
+      p.x = static_cast<float>(kBent - kBent * std::sin(angle));
+      p.z = static_cast<float>(kBent - kBent * std::cos(angle));
+    } else if (column.back() > kRough) {
+      p.z = static_cast<float>(0.015 * std::sin(12.9898 * p.x + 78.233 * p.y));
+    }
+  }
+  const Topology topology = topology_of(sheet);
+  Cells cells;
+  cells.count = 3;
+  for (std::uint32_t t = 0; t < sheet.triangle_count(); ++t) {
+    const std::uint32_t* v = &sheet.indices[3 * std::size_t{t}];
+    const int left = std::min({column[v[0]], column[v[1]], column[v[2]]});
+    const bool upper = sheet.positions[v[0]].y + sheet.positions[v[1]].y > kHigh;
+    cells.of_triangle.push_back(left >= kRough  ? cells.count++
+                                : left >= kBent ? 2
+                                                : std::uint32_t(upper));
+  }
+  const CoarseMesh mesh = build_coarse(topology, 40, cells);
+  EXPECT_TRUE(mesh.cells[0].unrolls && mesh.cells[1].unrolls);
+  EXPECT_FALSE(mesh.cells[2].unrolls);
 }
 
 // Lays the half x > 0 of a shape (or all of it, if `whole`) flat as one chart. Returns its largest

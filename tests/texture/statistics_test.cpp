@@ -107,6 +107,20 @@ TEST(Statistics, CountWhatIsNoLuminance) {
   EXPECT_NEAR(s.unlit_area, 0.75, 0.002);
 }
 
+// The luma of the smallest red is 0 in single precision.
+TEST(Statistics, OfDenormalLightAreFinite) {
+  const LuminanceStatistics s = measure(make_sheet({2, 1, 2, 1}, [](double u, double) {
+    return u < 1 ? Vec3f{1e-45f, 0, 0} : Vec3f{1, 1, 1};
+  }));
+  EXPECT_TRUE(std::isfinite(s.minimum_log));
+  EXPECT_TRUE(std::isfinite(s.log_average));
+  const LuminanceStatistics dim = measure(make_sheet({1, 1, 1, 1}, [](double, double) {
+    return Vec3f{1e-45f, 0, 0};
+  }));
+  EXPECT_GT(dim.lit_area, 0);
+  EXPECT_TRUE(std::isfinite(dim.minimum_log) && std::isfinite(dim.maximum_log));
+}
+
 TEST(Statistics, OfADarkSceneAreZero) {
   const LuminanceStatistics s =
       measure(make_sheet({2, 1, 2, 1}, [](double, double) { return Vec3f{}; }));

@@ -125,9 +125,11 @@ ExtremeNormals extreme_normals(const Topology& topology, const Cells& cells) {
       const glm::dvec2 p = plane.of(n) / height;
       points.push_back({{p.x, p.y}, topology.normals[t]});
     }
-    std::sort(points.begin(), points.end(), [](const ProjectedNormal& a, const ProjectedNormal& b) {
-      return a.x != b.x ? a.x < b.x : a.y < b.y;
-    });
+    // Stable: different normals may come to lie at one place.
+    std::stable_sort(points.begin(), points.end(),
+                     [](const ProjectedNormal& a, const ProjectedNormal& b) {
+                       return a.x != b.x ? a.x < b.x : a.y < b.y;
+                     });
     if (cone.angle < kHullCone && points.size() > 1) {
       sorted_hull(points, hull);
       points.swap(hull);

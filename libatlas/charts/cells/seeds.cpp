@@ -59,6 +59,7 @@ class Seeder {
       ruler_ = CellRuler(area, last - first);
       const std::uint32_t budget = flat(first, last) ? 1 : plan_.cells[grains_.component[first]];
       sample_piece(first, last, budget);
+      if (context_.cancelled()) break;  // grains beyond the border of a region may have no seed
       if (seeds_.size() == first_seed + 1) continue;
       number_by_grain(first, last, first_seed);
       for (int round = 0; round < 2; ++round) recentre(first, last, first_seed);
@@ -130,7 +131,7 @@ class Seeder {
       if (distance_[grain] == 0 || seeds_.size() - first_seed >= budget) break;
       add_seed(grain);
     }
-    add_leaning(first, last, first_seed);
+    if (!context_.cancelled()) add_leaning(first, last, first_seed);
   }
 
   // Scatters seeds in the order of the grains, starting with the start-th, each where no other seed
@@ -243,6 +244,7 @@ class Seeder {
       std::sort(leaning.begin(), leaning.end());
       const std::vector<std::uint32_t> before(owner_.begin() + first, owner_.begin() + last);
       for (const auto& [worst, g] : leaning) {
+        if (context_.cancelled()) return;
         if (cosine(g) >= limit) continue;
         if (seeds_.size() - first_seed == most) {
           if (developable(topology_, plan_.pieces.of(grains_.component[first]))) return;
@@ -251,9 +253,8 @@ class Seeder {
         add_seed(g);
       }
       find_changed(first, before, look);
-      for (const auto& [worst, g] : leaning)
-        look[g - first] = 1;  // it may have got a seed before
-                              // its turn
+      // A grain may have got another seed before its turn.
+      for (const auto& [worst, g] : leaning) look[g - first] = 1;
     }
   }
 

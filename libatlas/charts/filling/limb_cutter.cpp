@@ -123,6 +123,7 @@ class LimbCutter {
   // Computes what follows from the triangles, and assigns these to the piece with that number.
   void measure(Piece& piece, std::uint32_t number) {
     piece.area = 0;
+    piece.borders = 0;
     for (const std::uint32_t t : piece.triangles) {
       const auto& c = chart_.corners[t];
       piece.area += 0.5 * cross(chart_.uvs[c[0]], chart_.uvs[c[1]], chart_.uvs[c[2]]);

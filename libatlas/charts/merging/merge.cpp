@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <compare>
 #include <numbers>
 #include <queue>
 
@@ -27,6 +28,8 @@ constexpr double kConeFill = 0.4;  // of both convex hull and rectangle
 struct Border {
   std::uint32_t other;
   double length, crease;
+  // Compares all members: creases would otherwise be added in any order where lengths are equal.
+  auto operator<=>(const Border&) const = default;
 };
 
 // What the mergers of all pieces share.
@@ -135,9 +138,7 @@ class Merger {
       if (other == kNoIndex || other == a) continue;
       borders_.push_back({other, mesh_.arcs[arc].length, mesh_.arcs[arc].crease});
     }
-    std::sort(borders_.begin(), borders_.end(), [](const Border& x, const Border& y) {
-      return x.other != y.other ? x.other < y.other : x.length < y.length;
-    });
+    std::sort(borders_.begin(), borders_.end());
     std::size_t kept = 0;
     for (std::size_t i = 0; i < borders_.size(); ++i) {
       if (kept > 0 && borders_[kept - 1].other == borders_[i].other) {

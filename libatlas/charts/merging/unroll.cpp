@@ -41,8 +41,10 @@ class Unroller {
     }
   }
 
-  // Lays out bent cells first; cells in one plane only where they touch cells that unroll.
+  // Lays out bent cells first; cells in one plane only where they touch cells that unroll. Each
+  // cell is tried once.
   void run() {
+    tried_.assign(mesh_.cells.size(), 0);
     std::vector<std::uint32_t> found;
     for (std::uint32_t k = 0; k < mesh_.cells.size(); ++k) {
       if (mesh_.cells[k].slot_count == 0 || flat(k) || curved_[piece(k)]) continue;
@@ -60,7 +62,7 @@ class Unroller {
       const CoarseCell& cell = mesh_.cells[found[i]];
       for (std::uint32_t s = cell.first_slot; s < cell.first_slot + cell.slot_count; ++s) {
         for (const std::uint32_t k : mesh_.arcs[mesh_.slot_arc[s]].cell) {
-          if (k != kNoIndex && !mesh_.cells[k].unrolls && flat(k) && unroll(k)) found.push_back(k);
+          if (k != kNoIndex && !tried_[k] && flat(k) && unroll(k)) found.push_back(k);
         }
       }
     }
@@ -82,7 +84,10 @@ class Unroller {
 
   bool is_tip(std::uint32_t v) const { return !tips_.empty() && tips_.contains(v); }
 
-  bool unroll(std::uint32_t k) { return mesh_.cells[k].unrolls = uncurved(k) && lay_flat(k); }
+  bool unroll(std::uint32_t k) {
+    tried_[k] = 1;
+    return mesh_.cells[k].unrolls = uncurved(k) && lay_flat(k);
+  }
 
   // Lists the cell's triangles breadth-first in queue_, as long as angle defects stay small.
   // Returns whether the cell is developable.
@@ -168,6 +173,7 @@ class Unroller {
   // charts that the rest then depends on, and those had to be cut again, at three times the cost (a
   // cabin of a million triangles).
   std::vector<std::uint8_t> curved_;
+  std::vector<std::uint8_t> tried_;  // one per cell
   std::unordered_set<std::uint32_t> tips_;
   std::vector<std::uint32_t> seen_;              // one per vertex: the last cell that visited it
   std::vector<std::uint32_t> place_;             // one per triangle: its index in queue_
