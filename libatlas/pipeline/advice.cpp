@@ -139,6 +139,14 @@ std::string on_white(const ExportReport& report) {
       double(report.luminance.log_average), report.exposure_white);
 }
 
+// Colours are shown with 1 as white, so those of 0 to 255 are white all over.
+std::string on_large_colours(const ExportReport& report) {
+  return fmt::format(
+      "colours of {:.3g}, the geometric mean, are shown white like all above 1 (colours are shares "
+      "of 1 where a file does not store them as bytes: divide those of 0 to 255 by 255)",
+      double(report.luminance.log_average));
+}
+
 std::string on_black(const ExportReport& report) {
   return fmt::format(
       "light of {:.3g}, the brightest that is seen but for 1 %, is shown black; white begins at "
@@ -187,7 +195,12 @@ std::vector<std::string> advice_on_tone(const ExportReport& report, const Export
   const auto is_black = [&](double v) { return v > 0 && shown(report, v) < kBlack; };
   // A measured white suits the brightest light, even if all light is equal.
   const bool measured = options.tone.white <= 0 && options.tone.exposure_stops == 0;
-  if (!measured && shown(report, light.log_average) >= 1) lines.push_back(on_white(report));
+  if (shown(report, light.log_average) >= 1) {
+    if (!measured)
+      lines.push_back(on_white(report));
+    else if (options.quantity == Quantity::colour)
+      lines.push_back(on_large_colours(report));
+  }
   if (!measured && is_black(light.percentile99))
     lines.push_back(on_black(report));
   else if (is_black(light.median) && options.quantity != Quantity::colour)
