@@ -9,6 +9,7 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <set>
+#include <sstream>
 #include <string>
 #include <thread>
 
@@ -48,6 +49,22 @@ TEST_F(AtlasExport, ThePageOfTheReportNamesItsKeys) {
         EXPECT_TRUE(named) << key;
       }
   }
+}
+
+TEST_F(AtlasExport, ThePageOfProgramsExplainsEveryLineOfAStage) {
+  write("box.obj", lit_box(4));
+  const std::string page = slurp(PROGRAMS_PAGE);
+  const RunResult r = run(fmt::format("{0}/box.obj -o {0}/w.wrl", dir_.string()));
+  ASSERT_EQ(r.exit_code, 0) << r.output;
+  std::istringstream lines(r.output);
+  int stages = 0;
+  for (std::string line; std::getline(lines, line);) {
+    if (line.find(" -> ") == line.npos) continue;
+    const std::string stage = line.substr(0, line.find(' '));
+    EXPECT_NE(page.find(fmt::format("| `{}` |", stage)), page.npos) << line;
+    ++stages;
+  }
+  EXPECT_EQ(stages, 11);
 }
 
 TEST_F(AtlasExport, GlbHoldsItsImages) {
