@@ -119,6 +119,10 @@ TEST(Advice, UvChartsOfWhichNoneIsKeptAreNamed) {
   EXPECT_TRUE(holds(advice_on(report, options), "ChartOptions::keep_uv_charts kept no chart"));
   report.repairs.reflattened_charts = 9;
   EXPECT_TRUE(holds(advice_on(report, options), "ChartOptions::keep_uv_charts kept no chart"));
+  EXPECT_TRUE(holds(advice_on(report, options), "missing, flipped or lie on each other (leave"));
+  options.charts.cone_degrees = 30;
+  EXPECT_TRUE(holds(advice_on(report, options),
+                    "flipped, lie on each other or bend beyond ChartOptions::cone_degrees (leave"));
   report.repairs.kept_charts = 1;
   EXPECT_TRUE(advice_on(report, options).empty());
 }
