@@ -291,6 +291,25 @@ TEST_F(AtlasExport, APlanThatCannotBeCarriedOutSaysSo) {
   EXPECT_NE(r.output.find("more than the side of a square"), std::string::npos) << r.output;
 }
 
+TEST_F(AtlasExport, ValuesThatMayBeLightAreNamed) {
+  const auto ply = [&](const std::string& name) {
+    write("t.ply",
+          "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty "
+          "float z\nproperty float " +
+              name +
+              "\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n"
+              "0 0 0 5\n1 0 0 6\n0 1 0 7\n3 0 1 2\n");
+    const RunResult r =
+        run(fmt::format("{0}/t.ply -o {0}/w.wrl --atlases 1 --atlas-size 64", dir_.string()));
+    EXPECT_EQ(r.exit_code, 0) << r.output;
+    return r.output;
+  };
+  EXPECT_NE(ply("intensity").find("not read as light: intensity of the vertices"),
+            std::string::npos);
+  EXPECT_EQ(ply("illuminance").find("not read as light"), std::string::npos);
+  EXPECT_EQ(ply("alpha").find("not read as light"), std::string::npos);
+}
+
 TEST_F(AtlasExport, UnlitSceneGivesPlainUvs) {
   write("tri.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
   const RunResult r = run(fmt::format("{0}/tri.obj -o {0}/w.obj", dir_.string()));
