@@ -140,10 +140,10 @@ void add_page_options(CLI::App& app, ExportOptions& options) {
       ->capture_default_str()
       ->check(within(1, 64));
   app.add_option("--mips", options.mip_levels,
-                 "Mip levels whose lookups must not see a neighbouring chart; uvs without light: 0 "
-                 "unless given")
+                 "Mip levels whose lookups must not see a neighbouring chart; unless given, more "
+                 "where pages have room, and 0 for uvs without light")
       ->capture_default_str()
-      ->check(within(0, 5));
+      ->check(within(0, kMostMipLevels));
   app.add_option("--bake", options.bake_method, "least-squares, or average (as published)")
       ->transform(choices<BakeMethod>(
           {{"least-squares", BakeMethod::least_squares}, {"average", BakeMethod::average}}))
@@ -260,7 +260,10 @@ std::optional<ExportCommand> parse_export_command(int argc, char** argv, int& ex
   command.read.srgb_colours = command.options.quantity == Quantity::colour && !as_written;
   command.options.larger_plain_page = app.count("--atlas-size") == 0;
   if (app.count("--atlases") > 0) command.options.plain_pages = command.options.atlases;
-  if (app.count("--mips") > 0) command.options.plain_mip_levels = command.options.mip_levels;
+  if (app.count("--mips") > 0) {
+    command.options.plain_mip_levels = command.options.mip_levels;
+    command.options.more_mip_levels = false;
+  }
   return command;
 }
 

@@ -144,6 +144,11 @@ void add_rect_options(CLI::App& app, PackCommand& c) {
       ->default_str("hash");
 }
 
+void add_depfile_option(CLI::App& app, PackCommand& c) {
+  app.add_option("--depfile", c.depfile,
+                 "Also write a rule for make and ninja that lists every file that was read");
+}
+
 CLI::App* add_rects(CLI::App& app, PackCommand& c) {
   CLI::App* rects = app.add_subcommand("rects", "A CSV or JSON list of rectangles");
   rects->add_option("sizes", c.input, "CSV: [name,]width,height a line; JSON: an array")
@@ -173,6 +178,7 @@ CLI::App* add_images(CLI::App& app, PackCommand& c) {
           ->check(within(0, 254));
   add_off_flag(*images, "--no-trim", c.trim, "Keep transparent borders")->excludes(threshold);
   add_off_flag(*images, "--no-alias", c.alias, "Store identical images each");
+  add_depfile_option(*images, c);
   add_rect_options(*images, c);
   add_page_options(*images, c);
   add_effort_options(*images, c);
@@ -206,8 +212,7 @@ void add_mesh(CLI::App& app, PackCommand& c) {
             return good ? std::string() : "'" + text + "' must be 1, 2, or a multiple of 4 to 64";
           },
           ""));
-  mesh->add_option("--depfile", c.depfile,
-                   "Also write a rule for make and ninja that lists every file that was read");
+  add_depfile_option(*mesh, c);
   add_page_options(*mesh, c);
   add_effort_options(*mesh, c);
   add_run_options(*mesh, c);

@@ -21,8 +21,9 @@ struct PackCommand {
   // images
   bool trim = true, alias = true;
   int extrude = 0, trim_threshold = 0;
-  // mesh
+  // images and mesh
   std::filesystem::path depfile;
+  // mesh
   unsigned pages = 1, rotations = 16;
   int page_side = 2048;
   std::optional<double> uv_aspect;  // nothing: what the mesh's file says of it

@@ -245,13 +245,12 @@ Status check_outputs(const PackCommand& c) {
   return check_preview(c);
 }
 
-// Writes which files the mesh was made from, if that is asked for.
-Status write_depfile(const PackCommand& c, const LoadedScene& loaded, AtomicFiles& files) {
-  if (c.depfile.empty()) return {};
+// Returns the rule that tells which files the mesh was made from; empty if none is asked for.
+Result<std::string> rule_of(const PackCommand& c, const LoadedScene& loaded) {
+  if (c.depfile.empty()) return std::string();
   std::vector<std::filesystem::path> inputs{c.input};
   inputs.insert(inputs.end(), loaded.files.begin(), loaded.files.end());
-  const Result<std::string> rule = dependency_rule(c.output, inputs);
-  return rule.ok() ? files.write(c.depfile, *rule) : rule.status();
+  return dependency_rule(c.output, inputs);
 }
 
 }  // namespace
@@ -263,6 +262,8 @@ Result<PackedAtlas> run_mesh(const PackCommand& c, const Context& context) {
   read.normals = true;
   Result<LoadedScene> loaded = read_scene(c.input, read, context);
   if (!loaded.ok()) return loaded.status();
+  const Result<std::string> rule = rule_of(c, *loaded);
+  if (!rule.ok()) return rule.status();
   Scene& scene = loaded->scene;
   if (c.uv_aspect) loaded->uv_aspect = *c.uv_aspect, loaded->material_uv_aspects.clear();
   widen_uvs(*loaded);
@@ -302,7 +303,8 @@ Result<PackedAtlas> run_mesh(const PackCommand& c, const Context& context) {
   if (Status s = write_mesh(c.output, mesh, files); !s.ok()) return s;
   if (!c.preview.empty())
     if (Status s = draw(c.preview, mesh, item_colors(atlas), files); !s.ok()) return s;
-  if (Status s = write_depfile(c, *loaded, files); !s.ok()) return s;
+  if (!rule->empty())
+    if (Status s = files.write(c.depfile, *rule); !s.ok()) return s;
   if (Status s = files.commit(); !s.ok()) return s;
   atlas.files = {c.output, material_file(c.output)};
   return atlas;

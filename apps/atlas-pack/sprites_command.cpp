@@ -6,6 +6,7 @@
 
 #include "apps/atlas-pack/commands.h"
 #include "apps/atlas-pack/preview.h"
+#include "apps/common/depfile.h"
 #include "apps/common/files.h"
 #include "libatlas/core/atomic_file.h"
 #include "libatlas/core/file_extension.h"
@@ -64,35 +65,53 @@ void trim(Sprite& sprite, int threshold) {
   sprite.image = std::move(out);
 }
 
-Result<std::vector<Sprite>> read_sprites(const PackCommand& c, const Context& context) {
+struct SpriteFolder {
+  std::vector<fs::path> images;   // in the order of names
+  std::vector<fs::path> folders;  // those that were listed
+};
+
+// Lists the images of the folder and its subfolders, and says what is left out.
+Result<SpriteFolder> list_sprites(const fs::path& folder, const Context& context) {
   std::error_code error;
-  std::vector<fs::path> paths;
-  if (!fs::is_directory(c.input, error))
+  if (!fs::is_directory(folder, error))
     return Status(ErrorCode::not_found,
-                  fmt::format("{}: is no folder (give the folder of images)", c.input.string()));
-  for (fs::recursive_directory_iterator it(c.input, error), end; it != end; it.increment(error)) {
+                  fmt::format("{}: is no folder (give the folder of images)", folder.string()));
+  SpriteFolder found;
+  found.folders.push_back(folder);
+  for (fs::recursive_directory_iterator it(folder, error), end; it != end; it.increment(error)) {
     if (error) break;
     std::error_code unknown;
-    const bool folder = it->is_directory(unknown);
-    if (folder && !it->is_symlink(unknown)) continue;
-    if (folder)
-      context.say(fmt::format("{}: left out, a link to a folder", it->path().string()));
+    const fs::path& path = it->path();
+    const auto left_out = [&](const char* why) {
+      context.say(fmt::format("{}: left out, {}", path.string(), why));
+    };
+    const bool is_folder = it->is_directory(unknown);
+    if (is_folder && !it->is_symlink(unknown))
+      found.folders.push_back(path);
+    else if (is_folder)
+      left_out("a link to a folder");
     else if (!it->is_regular_file(unknown))
-      context.say(fmt::format("{}: left out, no file to read (a broken link, a pipe or a device)",
-                              it->path().string()));
-    else if (it->path().filename().string().starts_with("._"))
-      context.say(fmt::format("{}: left out, what macOS keeps beside a file", it->path().string()));
-    else if (is_image(it->path()))
-      paths.push_back(it->path());
+      left_out("no file to read (a broken link, a pipe or a device)");
+    else if (path.filename().string().starts_with("._"))
+      left_out("what macOS keeps beside a file");
+    else if (is_image(path))
+      found.images.push_back(path);
     else
-      context.say(fmt::format("{}: left out, no image by its ending", it->path().string()));
+      left_out("no image by its ending");
   }
-  if (error) return Status(ErrorCode::io, fmt::format("{}: {}", c.input.string(), error.message()));
-  if (paths.empty())
+  if (error) return Status(ErrorCode::io, fmt::format("{}: {}", folder.string(), error.message()));
+  if (found.images.empty())
     return Status(
         ErrorCode::bad_input,
-        fmt::format("{}: holds no image (png, jpg, tga, bmp, tif, gif or webp)", c.input.string()));
-  std::sort(paths.begin(), paths.end());
+        fmt::format("{}: holds no image (png, jpg, tga, bmp, tif, gif or webp)", folder.string()));
+  std::sort(found.images.begin(), found.images.end());
+  std::sort(found.folders.begin(), found.folders.end());
+  return found;
+}
+
+Result<std::vector<Sprite>> read_sprites(const PackCommand& c, const SpriteFolder& folder,
+                                         const Context& context) {
+  const std::vector<fs::path>& paths = folder.images;
   std::vector<Sprite> sprites;
   std::set<std::string> names;
   for (std::size_t i = 0; i < paths.size(); ++i) {
@@ -206,9 +225,20 @@ Status check_links(const PackCommand& c, const fs::path& page) {
                       page.string())};
 }
 
-// Writes the pages, the data of the frames on them, and the preview. All appear together.
-Status write_files(const PackCommand& c, const std::vector<Sprite>& sprites, PackedAtlas& atlas) {
-  AtomicFiles files;
+// Returns the rule that tells what the sheet was made from. Its target is the first page, or with
+// `of_data` the data of that page. Folders are inputs, too, because they change when an image is
+// added or removed.
+Result<std::string> rule_of(const PackCommand& c, const SpriteFolder& read, bool of_data,
+                            std::size_t pages) {
+  const std::string image = page_image(c, 0, pages);
+  std::vector<fs::path> inputs = read.folders;
+  inputs.insert(inputs.end(), read.images.begin(), read.images.end());
+  return dependency_rule(c.output.parent_path() / (of_data ? data_of_page(image) : image), inputs);
+}
+
+// Writes the pages, the data of the frames on them, and the preview.
+Status write_files(const PackCommand& c, const std::vector<Sprite>& sprites, PackedAtlas& atlas,
+                   AtomicFiles& files) {
   for (std::size_t p = 0; p < atlas.pages.size(); ++p)
     atlas.images.push_back(page_image(c, p, atlas.pages.size()));
   for (std::uint32_t p = 0; p < atlas.pages.size(); ++p) {
@@ -219,7 +249,8 @@ Status write_files(const PackCommand& c, const std::vector<Sprite>& sprites, Pac
     const fs::path image = c.output.parent_path() / atlas.images[p];
     const fs::path data = c.output.parent_path() / data_of_page(atlas.images[p]);
     // Only now is it known how many pages there are, whose names the preview must not have.
-    if (Status s = check_output(image, {c.preview}); !s.ok()) return s;
+    if (Status s = check_output(image, {c.preview, c.depfile}); !s.ok()) return s;
+    if (Status s = check_output(data, {c.preview, c.depfile}); !s.ok()) return s;
     for (const fs::path& file : {image, data})
       if (Status s = check_links(c, file); !s.ok()) return s;
     if (Status s = write_png(files.path_for(image), page, {}); !s.ok())
@@ -229,7 +260,7 @@ Status write_files(const PackCommand& c, const std::vector<Sprite>& sprites, Pac
   atlas.files = files.targets();
   if (!c.preview.empty())
     if (Status s = write_preview(c.preview, atlas, files); !s.ok()) return s;
-  return files.commit();
+  return {};
 }
 
 // Refuses outputs that cannot be written or lie in the folder that is read: there, pages could
@@ -243,7 +274,16 @@ Status check_pages(const PackCommand& c) {
     return {ErrorCode::bad_option,
             fmt::format("{}: lies in the folder that is read (name another folder)",
                         c.output.string())};
-  return check_output(fs::path(c.output) += ".png", {c.preview});
+  if (Status s = check_output(fs::path(c.output) += ".png", {c.preview, c.depfile}); !s.ok())
+    return s;
+  if (c.depfile.empty()) return {};
+  const fs::path beside = c.depfile.has_parent_path() ? c.depfile.parent_path() : fs::path(".");
+  if (lies_in(beside, c.input))
+    return {ErrorCode::bad_option,
+            fmt::format("{}: lies in the folder that is read, which every run would change (name "
+                        "another folder)",
+                        c.depfile.string())};
+  return check_output(c.depfile, {c.preview});
 }
 
 }  // namespace
@@ -254,7 +294,13 @@ Result<PackedAtlas> run_images(const PackCommand& command, const Context& contex
   const PackCommand& c = *named;
   if (Status s = check_pages(c); !s.ok()) return s;
   if (Status s = check_preview(c); !s.ok()) return s;
-  Result<std::vector<Sprite>> read = read_sprites(c, context);
+  const Result<SpriteFolder> folder = list_sprites(c.input, context);
+  if (!folder.ok()) return folder.status();
+  const bool of_data = lower_extension(command.output) != ".png";
+  // A name that no rule can hold is refused before the work.
+  if (Result<std::string> rule = rule_of(c, *folder, of_data, 1); !c.depfile.empty() && !rule.ok())
+    return rule.status();
+  Result<std::vector<Sprite>> read = read_sprites(c, *folder, context);
   if (!read.ok()) return read.status();
   std::vector<Sprite>& sprites = *read;
   if (c.alias) find_aliases(sprites);
@@ -295,7 +341,14 @@ Result<PackedAtlas> run_images(const PackCommand& command, const Context& contex
     if (sprites[i].alias_of >= 0) atlas.items[i].at = atlas.items[sprites[i].alias_of].at;
   atlas.aliases = aliases;
   if (Status s = check_sizes(atlas); !s.ok()) return s;
-  if (Status s = write_files(c, sprites, atlas); !s.ok()) return s;
+  AtomicFiles files;  // so that all appear together
+  if (Status s = write_files(c, sprites, atlas, files); !s.ok()) return s;
+  if (!c.depfile.empty()) {
+    const Result<std::string> rule = rule_of(c, *folder, of_data, atlas.pages.size());
+    if (!rule.ok()) return rule.status();
+    if (Status s = files.write(c.depfile, *rule); !s.ok()) return s;
+  }
+  if (Status s = files.commit(); !s.ok()) return s;
   name_old_pages(c, atlas.pages.size(), context);
   return atlas;
 }

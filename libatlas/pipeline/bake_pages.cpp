@@ -44,6 +44,7 @@ class PageBaker {
       : light_(pages.light),
         layout_(pages.layout),
         options_(pages.options),
+        mip_levels_(pages.mip_levels),
         files_(files),
         context_(context),
         pages_(placements_by_page(layout_)),
@@ -154,7 +155,7 @@ class PageBaker {
     bake.page_width = layout_.pages[p].width;
     bake.page_height = layout_.pages[p].height;
     bake.shifts = options_.shifts;
-    bake.mip_levels = options_.mip_levels;
+    bake.mip_levels = mip_levels_;
     bake.method = options_.bake_method;
     bake.linear = options_.exr;
     return bake_page(light_, pages_[p], bake, context);
@@ -163,6 +164,7 @@ class PageBaker {
   const ChartLight& light_;
   const PageLayout& layout_;
   const ExportOptions& options_;
+  const int mip_levels_;
   AtomicFiles& files_;
   const Context& context_;
   std::vector<std::vector<ChartPlacement>> pages_;

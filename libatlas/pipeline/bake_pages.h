@@ -33,6 +33,7 @@ struct PagesToBake {
   const ChartLight& light;
   const PageLayout& layout;
   const ExportOptions& options;
+  int mip_levels = 0;  // for which the pages were laid out
 };
 
 // Bakes the pages and writes their images, which are named after the target (safe_file_name):

@@ -47,9 +47,10 @@ Status check_options(const ExportOptions& o) {
   if (!(o.texel_metres >= 0) || !std::isfinite(o.texel_metres))
     return out_of_range("texel_metres", "a positive length");
   if (!(o.threshold >= 0 && o.threshold <= 1)) return out_of_range("threshold", "within 0..1");
-  if (o.mip_levels < 0 || o.mip_levels > 5) return out_of_range("mip_levels", "within 0..5");
-  if (o.plain_mip_levels < 0 || o.plain_mip_levels > 5)
-    return out_of_range("plain_mip_levels", "within 0..5");
+  const std::string levels = fmt::format("within 0..{}", kMostMipLevels);
+  if (o.mip_levels < 0 || o.mip_levels > kMostMipLevels) return out_of_range("mip_levels", levels);
+  if (o.plain_mip_levels < 0 || o.plain_mip_levels > kMostMipLevels)
+    return out_of_range("plain_mip_levels", levels);
   if (o.shifts < 1 || o.shifts > 64) return out_of_range("shifts", "within 1..64");
   const int room = o.atlas_size - 2 * gutter_pad(o.mip_levels);
   if (o.min_side < 1 || o.min_side > std::min(256, room)) {

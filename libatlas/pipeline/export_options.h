@@ -22,6 +22,9 @@ struct ExtraFile {
   std::string bytes = {};
 };
 
+// Gutters for more mip levels than these would take most of the pages.
+constexpr std::int32_t kMostMipLevels = 5;
+
 struct ExportOptions {
   // The extension chooses the format: .wrl, .wrz, .obj, .gltf, .glb. Images are written beside it.
   std::filesystem::path target = {};
@@ -40,8 +43,8 @@ struct ExportOptions {
   // Otherwise it has the shape that packs best, and textures for these uvs must have that shape.
   bool square_plain_page = false;
 
-  // As mip_levels, for plain uvs; 0..5. With 0, charts keep two texels between each other, which
-  // bilinear lookups need.
+  // As mip_levels, for plain uvs; 0..kMostMipLevels. With 0, charts keep two texels between each
+  // other, which bilinear lookups need.
   std::int32_t plain_mip_levels = 0;
 
   // The length of a texel on the real surface. 0: as fine as the budget could hold, within 1 to
@@ -61,8 +64,10 @@ struct ExportOptions {
   ChartOptions charts = {};
   ToneOptions tone = {};
 
-  // Lookups at levels 0..mip_levels read only the chart's texels; 0..5.
+  // Lookups at levels 0..mip_levels read only the chart's texels; 0..kMostMipLevels.
   std::int32_t mip_levels = 2;
+  // If all charts have full size, the same holds for as many more levels as need no more texels.
+  bool more_mip_levels = true;
   std::int32_t shifts = 4;  // number of sub-texel sample grids for baking, 1..64
   BakeMethod bake_method = BakeMethod::least_squares;
   PackPreset packing = PackPreset::standard;

@@ -11,16 +11,18 @@
 #include "libatlas/core/atomic_file.h"
 #include "libatlas/core/clock.h"
 #include "libatlas/core/parallel.h"
+#include "libatlas/core/progress.h"
 #include "libatlas/image/image_io.h"
 #include "libatlas/pipeline/advice.h"
 #include "libatlas/pipeline/assemble_world.h"
 #include "libatlas/pipeline/bake_pages.h"
 #include "libatlas/pipeline/fill_pages.h"
 #include "libatlas/pipeline/layout_options.h"
-#include "libatlas/pipeline/least_room.h"
 #include "libatlas/pipeline/longest_sides.h"
+#include "libatlas/pipeline/more_mip_levels.h"
 #include "libatlas/pipeline/page_layout.h"
 #include "libatlas/pipeline/part_gaps.h"
+#include "libatlas/pipeline/size_textures.h"
 #include "libatlas/pipeline/stage_recorder.h"
 #include "libatlas/pipeline/suit_pages.h"
 #include "libatlas/pipeline/write_export.h"
@@ -68,7 +70,7 @@ class Export {
     if (Status s = cut_charts(); !s.ok()) return s;
     if (plan_.bake) {
       if (Status s = cut_long_charts(); !s.ok()) return s;
-      if (Status s = size_textures(); !s.ok()) return s;
+      if (Status s = size_all_textures(); !s.ok()) return s;
     }
     if (Status s = pack(); !s.ok()) return s;
     if (plan_.bake) {
@@ -178,57 +180,33 @@ class Export {
     return {};
   }
 
-  // Fills sizing_.
-  Result<TextureResult> sized_textures(const TextureOptions& texture, const Context& context) {
-    Result<std::vector<double>> densities = wanted_densities(*light_, texture, context);
-    if (!densities.ok()) return densities.status();
-    const PageBudget budget{texture, options_};
-    sizing_ = sizing_factor(charts_, *densities, budget);
-    for (double& density : *densities) density *= sizing_;
-    const LayoutOptions layout = layout_options(charts_, options_, true);
-    if (Status s = check_least_room(charts_, *densities, layout); !s.ok()) return s;
-    Result<TextureResult> sized = size_chart_textures(*light_, scaled(texture, sizing_), context);
-    if (!sized.ok()) return sized;
-    const double refilled = refilled_factor(sizing_, *sized, budget);
-    if (refilled == sizing_) return sized;
-    sizing_ = refilled;
-    return size_chart_textures(*light_, scaled(texture, sizing_), context);
-  }
-
-  Status size_textures() {
+  Status size_all_textures() {
     const Context& context = record_.begin("downsizing");
     const TextureOptions texture = texture_options(plan_, report_, options_);
-    Result<TextureResult> sized = sized_textures(texture, context);
+    Result<SizedTextures> sized = size_textures(*light_, {texture, options_}, context);
     if (!sized.ok()) return sized.status();
+    sizing_ = sized->sizing;
+    TextureResult& textures = sized->textures;
     const PagesOfCharts pages{view_of(scene_), options_.charts.max_stretch,
                               double(options_.atlases) * options_.atlas_size * options_.atlas_size,
                               texture.max_side};
-    report_.opened_charts = open_part_gaps(pages, sized->charts, charts_, context).charts;
+    report_.opened_charts = open_part_gaps(pages, textures.charts, charts_, context).charts;
     if (context.cancelled()) return Status::cancelled();
     report_charts();
-    for (const ChartTexture& t : sized->charts) {
+    for (const ChartTexture& t : textures.charts) {
       densities_.push_back(t.texels_per_unit);
       full_densities_.push_back(t.full_texels_per_unit);
     }
     report_.texel = texture.texel;
-    report_.full_texels = sized->full_texels;
-    report_.final_texels = sized->final_texels;
-    report_.halved_charts = sized->halved;
-    report_.uniform_charts = sized->uniform;
-    report_.unlit_charts = sized->unlit;
-    report_.capped_charts = sized->capped;
-    report_.raised_charts = sized->raised;
-    report_.sampled_charts = sized->sampled;
-    report_.sampled_texels = sized->sampled_texels;
-    report_.downsizing_rms = sized->rms_error;
-    report_.downsizing_max = sized->max_error;
-    record_.finish({std::uint64_t(sized->full_texels), std::uint64_t(sized->final_texels), "texels",
-                    fmt::format("{} charts halved, {} unlit, rms {:.5f} ({} sampled)",
-                                sized->halved, sized->unlit, sized->rms_error, sized->sampled)});
+    report_textures(textures, report_);
+    record_.finish(
+        {std::uint64_t(textures.full_texels), std::uint64_t(textures.final_texels), "texels",
+         fmt::format("{} charts halved, {} unlit, rms {:.5f} ({} sampled)", textures.halved,
+                     textures.unlit, textures.rms_error, textures.sampled)});
     return {};
   }
 
-  // Given charts keep their borders.
+  // Given charts keep their borders. Raises report_.mip_levels.
   Result<PageLayout> lay_out_lit(const LayoutOptions& options, const Context& context) {
     if (!options_.charts.keep_uv_charts) {
       SizedCharts sized{std::move(charts_), std::move(densities_), std::move(full_densities_)};
@@ -240,7 +218,16 @@ class Export {
       if (!cut.ok()) return cut.status();
       report_charts();
     }
-    return lay_out_pages(charts_, densities_, options, context);
+    const double first = options_.more_mip_levels ? kFirstLayout : 1;
+    Result<PageLayout> layout =
+        lay_out_pages(charts_, densities_, options, part_of_stage(context, "packing", 0, first));
+    if (!layout.ok() || !options_.more_mip_levels) return layout;
+    Result<GuardedLayout> guarded =
+        guard_more_levels({charts_, densities_}, options, {std::move(*layout), options_.mip_levels},
+                          part_of_stage(context, "packing", first, 1));
+    if (!guarded.ok()) return guarded.status();
+    report_.mip_levels = guarded->mip_levels;
+    return std::move(guarded->layout);
   }
 
   // Without light, no texel density is required, so pages are filled as well as packing can.
@@ -265,6 +252,7 @@ class Export {
     const Context& context = record_.begin("packing");
     const std::size_t uncut = charts_.charts.size();
     const LayoutOptions layout = layout_options(charts_, options_, plan_.bake);
+    report_.mip_levels = plan_.bake ? options_.mip_levels : options_.plain_mip_levels;
     Result<PageLayout> laid =
         plan_.bake ? lay_out_lit(layout, context) : lay_out_plain(layout, context);
     if (!laid.ok()) return laid.status();
@@ -299,7 +287,8 @@ class Export {
 
   Status bake() {
     const Context& context = record_.begin("baking");
-    Result<BakedPages> baked = bake_pages({*light_, layout_, options_}, files_, context);
+    Result<BakedPages> baked =
+        bake_pages({*light_, layout_, options_, report_.mip_levels}, files_, context);
     if (!baked.ok()) return files_.told_by_target(baked.status());
     report_.pages = baked->pages;
     image_sources_ = std::move(baked->image_sources);
@@ -368,6 +357,8 @@ class Export {
     record_.finish(std::move(*written));
     return {};
   }
+
+  static constexpr double kFirstLayout = 0.7;  // share of packing's progress
 
   const Scene& scene_;
   const std::optional<FileView> view_;

@@ -16,7 +16,8 @@ struct LayoutEffort : LayoutOptions {
   bool press_pages = true;  // as in FitOptions
   double wanted_fill = 0;   // as in pack::FitSearchOptions
   bool more_work = true;    // spend more effort on a poorly filled page; see work_on_layout()
-  double most_won = 1.1;    // by which factor more effort may make a poorly filled page fuller
+  std::uint32_t max_packings = 25;  // as in FitOptions
+  double most_won = 1.1;  // by which factor more effort may make a poorly filled page fuller
 };
 
 struct WorkedLayout : PageLayout {

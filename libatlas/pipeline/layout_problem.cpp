@@ -116,6 +116,7 @@ LayoutProblem::LayoutProblem(const WantedCharts& wanted, const LayoutEffort& how
   fit.square = options.square;
   fit.wanted_fill = options.wanted_fill;
   fit.press_pages = options.press_pages;
+  fit.max_packings = options.max_packings;
   if (options.outlines) {
     outlines.emplace(charts, texels_per_unit);
     fit.shapes = outlines->shapes;

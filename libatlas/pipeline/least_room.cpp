@@ -39,6 +39,17 @@ double least_texels(const ChartSet& charts, std::span<const double> densities,
   return texels;
 }
 
+double texels_with_gutters(const WantedCharts& wanted, double padding) {
+  double texels = 0;
+  for (std::size_t c = 0; c < wanted.charts.charts.size(); ++c) {
+    const Chart& chart = wanted.charts.charts[c];
+    const Vec2d density = wanted.texels_per_unit[c];
+    const double longest = std::max(chart.size.x * density.x, chart.size.y * density.y);
+    texels += with_gutter(chart.distortion.uv_area * density.x * density.y, longest, padding);
+  }
+  return texels;
+}
+
 double most_covered(const ChartSet& charts, double density, const LayoutOptions& options) {
   // Within the padding p of a connected chart of area A and length L lie at least A + 2 p L + 4 p²
   // texels: each row and column that it meets becomes longer by 2 p. At scale s these are

@@ -5,6 +5,7 @@
 
 #include "libatlas/charts/charts.h"
 #include "libatlas/core/status.h"
+#include "libatlas/pipeline/layout_effort.h"
 #include "libatlas/pipeline/page_layout.h"
 
 namespace atlas {
@@ -14,6 +15,9 @@ namespace atlas {
 // full textures, one per chart, > 0; sides beyond the page's do not count.
 double least_texels(const ChartSet& charts, std::span<const double> densities,
                     const LayoutOptions& options);
+
+// Returns the texels that charts of these sizes take at least, with gutters of `padding` texels.
+double texels_with_gutters(const WantedCharts& wanted, double padding);
 
 // Returns a share of the pages that charts of one density do not exceed however they are laid out,
 // because their gutters take the rest. With options.free_aspect, it is a share of the page as it is

@@ -176,8 +176,11 @@ class StepList {
               : "one page");
     add("packing", true, fmt::format("{}, {:.1f} M texels of room", budget, capacity / 1e6));
     add_baked("baking", true,
-              fmt::format("{} shifted grids, gutters for mip levels 0 to {}", options_.shifts,
-                          options_.mip_levels));
+              fmt::format("{} shifted grids, gutters for mip levels 0 to {}{}", options_.shifts,
+                          options_.mip_levels,
+                          options_.more_mip_levels && options_.mip_levels < kMostMipLevels
+                              ? ", or more where pages have room"
+                              : ""));
   }
 
   void result() {

@@ -201,6 +201,7 @@ Json pages_json(const ExportReport& r) {
     packing["border_texels"] = r.gaps->border;
     packing["shared_border_texels"] = r.gaps->near_after;
   }
+  packing["mip_levels"] = r.mip_levels;
   packing["gpu_bytes"] = r.gpu_bytes;
   packing["thin_triangles"] = r.thin_triangles;
   if (r.texels_drawn_twice) packing["texels_drawn_twice"] = *r.texels_drawn_twice;

@@ -149,6 +149,7 @@ TEST(ReportJson, FiguresOfPagesAreInTheirPlaces) {
                       {"/packing/opened_charts", &r.opened_charts},
                       {"/packing/border_texels", &r.gaps->border},
                       {"/packing/shared_border_texels", &r.gaps->near_after},
+                      {"/packing/mip_levels", &r.mip_levels},
                       {"/packing/gpu_bytes", &r.gpu_bytes},
                       {"/packing/thin_triangles", &r.thin_triangles},
                       {"/packing/texels_drawn_twice", &*r.texels_drawn_twice},

@@ -110,12 +110,13 @@ TEST(ExportOptions, OfTexturesAndTheMesh) {
                               .options;
   EXPECT_EQ(p.shifts, 9);
   EXPECT_EQ(p.mip_levels, 1);
-  EXPECT_FALSE(p.outlines || p.simplify || p.measure_error);
+  EXPECT_FALSE(p.more_mip_levels || p.outlines || p.simplify || p.measure_error);
   EXPECT_EQ(p.simplify_slip, 0.5);
   EXPECT_TRUE(p.exr);
   EXPECT_EQ(p.png_compression, 8);
   const ExportOptions plain = parsed({}).options;
-  EXPECT_TRUE(plain.follow_textures && plain.outlines && plain.simplify && plain.measure_error);
+  EXPECT_TRUE(plain.more_mip_levels && plain.follow_textures && plain.outlines && plain.simplify &&
+              plain.measure_error);
   EXPECT_FALSE(plain.exr || plain.square_plain_page || plain.charts_only || plain.keep_scene);
 }
 

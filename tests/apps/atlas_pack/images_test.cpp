@@ -1,4 +1,5 @@
 // Tests atlas-pack images, which packs sprites.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -14,6 +15,35 @@
 
 namespace atlas::test {
 namespace {
+
+TEST_F(AtlasPack, ImagesListWhatTheyWereMadeFrom) {
+  fs::create_directories(dir_ / "in/sub dir");
+  const atlas::Image8 image(8, 8, 3, 77);
+  for (const char* name : {"in/b.png", "in/a.png", "in/sub dir/c.png"})
+    ASSERT_TRUE(atlas::write_png(dir_ / name, image, {}).ok());
+  write("in/notes.txt", "no image");
+  const std::string inputs =
+      ": \\\n  in \\\n  in/sub\\ dir \\\n  in/a.png \\\n  in/b.png \\\n  in/sub\\ dir/c.png\n";
+  for (const auto& [options, target] : {std::pair("-o sheet", "sheet.json"),
+                                        {"-o sheet.json", "sheet.json"},
+                                        {"-o sheet.png", "sheet.png"},
+                                        {"-o many.png --no-alias --page 8x8", "many-0.png"},
+                                        {"-o many --no-alias --page 8x8", "many-0.json"}}) {
+    const RunResult r = run(fmt::format("images in {} --depfile sheet.d", options));
+    ASSERT_EQ(r.exit_code, 0) << r.output;
+    EXPECT_EQ(read("sheet.d"), target + inputs) << options;
+    EXPECT_TRUE(fs::exists(dir_ / target)) << options;
+  }
+  for (const char* refused :
+       {"-o new --depfile new.png", "-o new --depfile new.json", "-o new --depfile in/new.d",
+        "-o new --depfile 'in/sub dir/new.d'", "-o new --preview new.svg --depfile new.svg",
+        "-o 'a;b' --depfile new.d", "-o new --no-alias --page 8x8 --depfile new-1.png"}) {
+    EXPECT_EQ(run(fmt::format("images in {}", refused)).exit_code, 2) << refused;
+    EXPECT_TRUE(!fs::exists(dir_ / "new.d") && !fs::exists(dir_ / "new.png") &&
+                !fs::exists(dir_ / "new-0.png"))
+        << refused;
+  }
+}
 
 TEST_F(AtlasPack, SpritesKeepTheirTexels) {
   fs::create_directories(dir_ / "in/sub");

@@ -54,6 +54,9 @@ TEST_F(AtlasPack, MeshListsWhatItWasMadeFrom) {
     EXPECT_EQ(run(fmt::format("mesh 'm n.obj' -o out.obj --page 64 --depfile {}", same)).exit_code,
               2)
         << same;
+  // Before anything else is said of the mesh, such as that it has no uvs.
+  write("no;uvs.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+  EXPECT_EQ(run("mesh 'no;uvs.obj' -o new.obj --depfile new.d").exit_code, 2);
   write("none.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
   EXPECT_EQ(run("mesh none.obj -o new.obj --depfile new.d").exit_code, 1);
   EXPECT_EQ(run("mesh 'm n.obj' -o 'a;b.obj' --page 64 --depfile new.d").exit_code, 2);
