@@ -44,6 +44,20 @@ void print_result(const ExportReport& report, bool kept, app::Terminal& terminal
                                 : plain_pages_text(plain)));
 }
 
+// Names what a scene without light has at its vertices, which may be light under another name.
+void name_unread_values(const Scene& scene, app::Terminal& terminal) {
+  constexpr std::string_view kKind = "values of vertices: ";
+  std::string names;
+  for (const auto& [kind, count] : scene.not_read)
+    if (kind.starts_with(kKind) && kind != "values of vertices: alpha")
+      names += (names.empty() ? "" : ", ") + kind.substr(kKind.size());
+  if (scene.lit() || names.empty()) return;
+  terminal.line(fmt::format(
+      "not read as light: {} of the vertices (light is called illuminance, or illuminance_r, "
+      "illuminance_g and illuminance_b; or --illumination names a file of it)",
+      names));
+}
+
 // Names the pages that an earlier export to the same name, with more pages, has left: they are not
 // part of this world.
 void name_old_pages(const ExportReport& report, app::Terminal& terminal) {
@@ -241,6 +255,8 @@ Status run(const app::ExportCommand& command, app::Terminal& terminal) {
       context);
   if (!report.ok()) return report.status();
   print_result(*report, command.options.keep_scene, terminal);
+  if (!command.options.charts_only && !command.options.keep_scene)
+    name_unread_values(loaded->scene, terminal);
   for (const std::string& line : report->not_kept) terminal.line("not kept: " + line);
   name_old_pages(*report, terminal);
   return write_report(std::move(*report), reading, command, terminal);

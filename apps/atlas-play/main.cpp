@@ -154,6 +154,10 @@ Status play(CommandLine& line, Terminal& terminal, const Context& context) {
   name_old_frames(line.play, done->recorded, terminal);
   terminal.line(fmt::format("{} frames, median {:.2f} ms, {} shadow maps begun", done->frames,
                             done->median_seconds * 1e3, done->shadow_passes));
+  if (headless && line.play.screenshot.empty() && line.play.record.empty())
+    terminal.line(
+        "no picture was written (--screenshot FILE.png writes the last frame, --record FOLDER "
+        "all)");
   return {};
 }
 

@@ -59,7 +59,8 @@ Status check_world_extension(const std::filesystem::path& path) {
     names += kFormats[i].extension;
   }
   return {ErrorCode::bad_option,
-          fmt::format("{}: the target must end in {}", path.string(), names)};
+          fmt::format("{}: the target must end in {}",
+                      path.empty() ? "no name given" : path.string(), names)};
 }
 
 bool holds_viewpoint(const std::filesystem::path& path) {

@@ -71,15 +71,19 @@ std::string on_noise(const ExportReport& report) {
       report.charts.size(), report.noise.peaks, report.noise.vertices);
 }
 
-double packed_texel_mm(const ExportReport& report) {
-  return 1e3 * report.packed_texel * report.metres_per_unit;
+std::string length_text(double metres) {
+  return metres < 1 ? fmt::format("{:.3g} mm", 1e3 * metres) : fmt::format("{:.3g} m", metres);
+}
+
+std::string packed_length(const ExportReport& report) {
+  return length_text(report.packed_texel * report.metres_per_unit);
 }
 
 std::string on_long_texels(const ExportReport& report, double texels_a_chart) {
   return fmt::format(
-      "{} charts have {:.0f} texels each on average, {:.3g} mm long: little of the light is left "
+      "{} charts have {:.0f} texels each on average, {} long: little of the light is left "
       "(a shorter ExportOptions::texel_metres)",
-      report.charts.size(), texels_a_chart, packed_texel_mm(report));
+      report.charts.size(), texels_a_chart, packed_length(report));
 }
 
 // From this share of the pages on, a lower least side leaves noticeably more of them to other
@@ -97,9 +101,9 @@ std::string room_for_texels(const ExportReport& report, const ExportOptions& opt
 std::string on_coarse_texels(const ExportReport& report, const ExportOptions& options) {
   const bool given = options.texel_metres > 0;
   return fmt::format(
-      "texels are {:.3g} mm long, not the {:.3g} mm {}, since the pages hold no more ({}, or a "
+      "texels are {} long, not the {} {}, since the pages hold no more ({}, or a "
       "longer ExportOptions::texel_metres{})",
-      packed_texel_mm(report), 1e3 * report.texel * report.metres_per_unit,
+      packed_length(report), length_text(report.texel * report.metres_per_unit),
       given ? "of ExportOptions::texel_metres" : "that are usual", room_for_texels(report, options),
       given ? "" : " if it will do");
 }
@@ -126,9 +130,9 @@ bool loses_detail(const ExportReport& report) {
 std::string on_lost_detail(const ExportReport& report, const ExportOptions& options) {
   const bool held = report.packed_texel <= 1.1 * report.texel;
   return fmt::format(
-      "pages show the light to {:.1f} dB only: their texels are {:.3g} mm long, and the vertices "
-      "that carry the light are {:.3g} mm apart ({})",
-      report.fidelity.psnr, packed_texel_mm(report), 1e3 * report.plan.light_spacing_m,
+      "pages show the light to {:.1f} dB only: their texels are {} long, and the vertices "
+      "that carry the light are {} apart ({})",
+      report.fidelity.psnr, packed_length(report), length_text(report.plan.light_spacing_m),
       held ? "a shorter ExportOptions::texel_metres" : room_for_texels(report, options));
 }
 
@@ -137,6 +141,14 @@ std::string on_white(const ExportReport& report) {
       "light of {:.3g}, the geometric mean, is shown white like all above {:.3g}: most shadows are "
       "lost (a larger ToneOptions::white or a lower ToneOptions::exposure_stops)",
       double(report.luminance.log_average), report.exposure_white);
+}
+
+// Colours are shown with 1 as white, so those of 0 to 255 are white all over.
+std::string on_large_colours(const ExportReport& report) {
+  return fmt::format(
+      "colours of {:.3g}, the geometric mean, are shown white like all above 1 (colours are shares "
+      "of 1 where a file does not store them as bytes: divide those of 0 to 255 by 255)",
+      double(report.luminance.log_average));
 }
 
 std::string on_black(const ExportReport& report) {
@@ -187,7 +199,12 @@ std::vector<std::string> advice_on_tone(const ExportReport& report, const Export
   const auto is_black = [&](double v) { return v > 0 && shown(report, v) < kBlack; };
   // A measured white suits the brightest light, even if all light is equal.
   const bool measured = options.tone.white <= 0 && options.tone.exposure_stops == 0;
-  if (!measured && shown(report, light.log_average) >= 1) lines.push_back(on_white(report));
+  if (shown(report, light.log_average) >= 1) {
+    if (!measured)
+      lines.push_back(on_white(report));
+    else if (options.quantity == Quantity::colour)
+      lines.push_back(on_large_colours(report));
+  }
   if (!measured && is_black(light.percentile99))
     lines.push_back(on_black(report));
   else if (is_black(light.median) && options.quantity != Quantity::colour)
@@ -209,11 +226,12 @@ std::vector<std::string> advice_on(const ExportReport& report, const ExportOptio
   constexpr double kFewTexels = 32 * 32, kHardlyAny = 8 * 8, kLittleUsed = 0.4, kCoarse = 2;
   constexpr std::size_t kManyCharts = 256;
   std::vector<std::string> lines;
+  const bool cone = options.charts.cone_degrees > 0;
   if (options.charts.keep_uv_charts && report.repairs.kept_charts == 0)
-    lines.push_back(
+    lines.push_back(fmt::format(
         "ChartOptions::keep_uv_charts kept no chart: the scene's texture coordinates are missing, "
-        "flipped or "
-        "lie on each other (leave it out for charts of all new borders)");
+        "flipped{} lie on each other{} (leave it out for charts of all new borders)",
+        cone ? "," : " or", cone ? " or bend beyond ChartOptions::cone_degrees" : ""));
   if (options.charts.keep_uv_charts && keeps_crumbs(report)) lines.push_back(on_crumbs(report));
   if (report.triangles > 0 && report.surface_area == 0)
     lines.push_back(

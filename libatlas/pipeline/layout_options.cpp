@@ -45,6 +45,8 @@ LayoutOptions layout_options(const ChartSet& charts, const ExportOptions& option
     layout.padding = gutter_pad(options.plain_mip_levels);
     layout.alignment = 1 << options.plain_mip_levels;
     layout.minimum_side = 0;
+    if (options.plain_mip_levels > 0)
+      layout.remedy += ", or a lower ExportOptions::plain_mip_levels";
     layout.square = options.square_plain_page || options.plain_pages > 1;
     layout.free_aspect = !layout.square;
   }

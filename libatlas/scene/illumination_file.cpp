@@ -36,8 +36,8 @@ Result<std::vector<Vec3f>> read_text(const fs::path& path) {
     if ((count != 1 && count != 3) || !scan.at_line_end()) {
       return Status(
           ErrorCode::bad_input,
-          fmt::format("{}:{}: not an illumination value (write `r g b`, or one number, for "
-                      "each vertex)",
+          fmt::format("{}:{}: not an illumination value (write `r g b` with blanks between, or "
+                      "one number, for each vertex)",
                       path.string(), line));
     }
     if (count == 1) n[1] = n[2] = n[0];

@@ -153,8 +153,8 @@ class PlyParser {
     if (rgb.size() == 1) rgb = {rgb[0], rgb[0], rgb[0]};
     const auto uv = find_group(
         {{"s", "t"}, {"u", "v"}, {"texture_u", "texture_v"}, {"texture_s", "texture_t"}});
-    const auto normal =
-        builder_.wants_normals ? find_group({{"nx", "ny", "nz"}}) : std::vector<int>();
+    const auto given_normal = find_group({{"nx", "ny", "nz"}});
+    const auto normal = builder_.wants_normals ? given_normal : std::vector<int>();
     const auto alpha = builder_.wants_rest ? find_group({{"alpha"}}) : std::vector<int>();
     const double opaque = alpha.empty() ? 1 : colour_scale(element_->properties[alpha[0]].type);
     double scale[3] = {1, 1, 1};
@@ -165,6 +165,7 @@ class PlyParser {
     std::vector<int> read;
     for (const std::vector<int>& group : {xyz, rgb, uv, normal, alpha})
       read.insert(read.end(), group.begin(), group.end());
+    if (!builder_.wants_rest) read.insert(read.end(), given_normal.begin(), given_normal.end());
     PlyLosses losses(*element_, read, "vertices");
     std::vector<std::string> bad;  // places of the first unusable positions
     builder_.positions.reserve(element_->count);
@@ -190,6 +191,8 @@ class PlyParser {
       }
     }
     count(losses);
+    // What else there is may be the light under another name.
+    if (rgb.empty() && !builder_.wants_rest) losses.add_to(builder_.not_read);
     vertex_uvs_ = !uv.empty();
     auto next_bad = bad.begin();
     builder_.check_positions([&](std::size_t) { return *next_bad++; });

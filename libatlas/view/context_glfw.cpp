@@ -130,7 +130,8 @@ class GlfwWindow : public GlWindow {
 
   Status open(const ContextOptions& options, const WindowOptions& wanted) {
     if (!use_.begin())
-      return {ErrorCode::unsupported, fmt::format("no window: {} (try --headless)", last_error())};
+      return {ErrorCode::unsupported,
+              fmt::format("no window: {} (try --headless --screenshot FILE.png)", last_error())};
     watch_display();
     glfwDefaultWindowHints();
     glfwWindowHint(GLFW_CONTEXT_VERSION_MAJOR, 4);
@@ -144,7 +145,8 @@ class GlfwWindow : public GlWindow {
     glfwDefaultWindowHints();  // the next window may be the program's own
     if (!window_)
       return {ErrorCode::unsupported,
-              fmt::format("no OpenGL 4.5 window: {} (try --headless)", last_error())};
+              fmt::format("no OpenGL 4.5 window: {} (try --headless --screenshot FILE.png)",
+                          last_error())};
     glfwMakeContextCurrent(window_);
     glfwSwapInterval(wanted.vsync ? 1 : 0);
     return initialise(options.debug);

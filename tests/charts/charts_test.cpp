@@ -316,6 +316,9 @@ TEST(Charts, BadInputAndOptionsAreNamed) {
     mesh.indices[4] = static_cast<std::uint32_t>(beyond);
     EXPECT_EQ(code(mesh), ErrorCode::bad_input);
   }
+  // What happens to those who copy the faces of an OBJ file, which count from 1.
+  EXPECT_EQ(make_charts(mesh.view(), {}, {}).status().message(),
+            "triangle 1: vertex index 1000 names none of the 9 positions (indices count from 0)");
   mesh = Mesh(grid(2, 2));
   mesh.positions[0].y = std::nanf("");
   EXPECT_EQ(code(mesh), ErrorCode::bad_input);

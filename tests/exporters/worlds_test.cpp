@@ -280,6 +280,7 @@ TEST(Worlds, NamesOfFilesAndFormats) {
   EXPECT_TRUE(check_world_extension("a.WRZ").ok());
   EXPECT_EQ(check_world_extension("a.stl").message(),
             "a.stl: the target must end in .wrl, .wrz, .obj, .gltf or .glb");
+  EXPECT_TRUE(check_world_extension({}).message().starts_with("no name given: the target must"));
 }
 
 }  // namespace

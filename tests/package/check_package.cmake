@@ -57,6 +57,19 @@ if(NOT output MATCHES "2304 triangles, [1-9][0-9]* charts, stretch 1\\.[0-9]+")
   message(FATAL_ERROR "unwrap printed: ${output}")
 endif()
 message(STATUS "find_package: ${output}")
+# The mesh for this one has no light and two triangles a side, as a newcomer's first file may.
+file(WRITE ${out}/cube.obj "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 1\nv 1 0 1\nv 1 1 1\nv 0 1 1\n\
+f 4 3 2 1\nf 5 6 7 8\nf 1 2 6 5\nf 2 3 7 6\nf 3 4 8 7\nf 4 1 5 8\n")
+file(REMOVE_RECURSE ${out}/steps)
+run(${out}/stages ${out}/cube.obj ${out}/steps)
+if(NOT output MATCHES "12 triangles, [1-6] charts.*PSNR [4-9][0-9].*simplify +12 triangles")
+  message(FATAL_ERROR "stages printed: ${output}")
+endif()
+foreach(name charts.obj layout.svg page.png world.glb)
+  if(NOT EXISTS ${out}/steps/${name})
+    message(FATAL_ERROR "stages wrote no ${name}")
+  endif()
+endforeach()
 
 # Where libraries have prefixes of their own. A shared libatlas brings them itself.
 file(GLOB_RECURSE archive ${prefix}/*/libatlasgeo.a)

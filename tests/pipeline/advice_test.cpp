@@ -119,6 +119,10 @@ TEST(Advice, UvChartsOfWhichNoneIsKeptAreNamed) {
   EXPECT_TRUE(holds(advice_on(report, options), "ChartOptions::keep_uv_charts kept no chart"));
   report.repairs.reflattened_charts = 9;
   EXPECT_TRUE(holds(advice_on(report, options), "ChartOptions::keep_uv_charts kept no chart"));
+  EXPECT_TRUE(holds(advice_on(report, options), "missing, flipped or lie on each other (leave"));
+  options.charts.cone_degrees = 30;
+  EXPECT_TRUE(holds(advice_on(report, options),
+                    "flipped, lie on each other or bend beyond ChartOptions::cone_degrees (leave"));
   report.repairs.kept_charts = 1;
   EXPECT_TRUE(advice_on(report, options).empty());
 }
@@ -188,6 +192,26 @@ TEST(Advice, AGivenExposureCountsLikeAGivenWhite) {
   options.tone.exposure_stops = 2;
   EXPECT_TRUE(holds(advice_on(report, options), "is shown white like all above 90"));
   report.luminance = {};
+  EXPECT_TRUE(advice_on(report, options).empty());
+}
+
+// An OBJ whose vertices have colours of 0 to 255: white is 1, whatever the colours are.
+TEST(Advice, ColoursBeyondOneAreNamed) {
+  ExportReport report = report_of(100, 8, 1024);
+  report.tone.scale = 1;
+  report.exposure_white = 1;
+  report.luminance.log_average = report.luminance.percentile99 = 140;
+  ExportOptions options;
+  options.quantity = Quantity::colour;
+  EXPECT_TRUE(holds(advice_on(report, options), "colours of 140, the geometric mean"));
+  EXPECT_TRUE(holds(advice_on(report, options), "divide those of 0 to 255 by 255"));
+  options.tone.white = 100;  // given by hand, so they are known
+  report.tone.scale = 0.01F;
+  report.exposure_white = 100;
+  EXPECT_FALSE(holds(advice_on(report, options), "by 255"));
+  options.tone.white = 0;
+  report.tone.scale = 1;
+  report.luminance.log_average = report.luminance.percentile99 = 0.7;
   EXPECT_TRUE(advice_on(report, options).empty());
 }
 

@@ -21,7 +21,8 @@ TEST(Advice, TexelsAsLongAsChartsAreNamed) {
   ExportOptions options;
   EXPECT_TRUE(advice_on(report, options).empty());  // no texel size was given
   report.packed_texel = report.texel = options.texel_metres = 5;
-  EXPECT_TRUE(holds(advice_on(report, options), "16 charts have 11 texels each on average, 5e+03"));
+  EXPECT_TRUE(
+      holds(advice_on(report, options), "16 charts have 11 texels each on average, 5 m long"));
   EXPECT_TRUE(advice_on(report_of(2, 1, 16), options).empty());
 }
 
@@ -45,6 +46,9 @@ TEST(Advice, TexelsThatPagesCannotHoldAreNamed) {
   options.texel_metres = 0.005;
   EXPECT_TRUE(holds(advice_on(report, options),
                     "texels are 25 mm long, not the 5 mm of ExportOptions::texel_metres"));
+  report.metres_per_unit *= 100;
+  options.texel_metres *= 100;
+  EXPECT_TRUE(holds(advice_on(report, options), "texels are 2.5 m long, not the 500 mm of"));
   report.texel = 1.25;
   EXPECT_TRUE(advice_on(report, {}).empty());
 }

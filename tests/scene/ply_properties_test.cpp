@@ -188,5 +188,25 @@ TEST(Ply, CountsPropertiesThatASceneCannotHold) {
   EXPECT_TRUE(read->scene.vertex_opacity.empty());
 }
 
+// They may be the light under another name, which a program can then say.
+TEST(Ply, ValuesOfVerticesWithoutLightAreCounted) {
+  const TempFolder folder;
+  const auto not_read = [&](const std::string& value) {
+    const auto path = folder.write(
+        "t.ply",
+        "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\n"
+        "property float z\nproperty float nx\nproperty float ny\nproperty float nz\nproperty "
+        "float " +
+            value +
+            "\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n"
+            "0 0 0 0 0 1 5\n1 0 0 0 0 1 6\n0 1 0 0 0 1 7\n3 0 1 2\n");
+    const auto read = read_scene(path, {}, {});
+    EXPECT_TRUE(read.ok()) << read.status().message();
+    return read.ok() ? read->scene.not_read : LossCounts{};
+  };
+  EXPECT_EQ(not_read("intensity"), (LossCounts{{"values of vertices: intensity", 3}}));
+  EXPECT_EQ(not_read("illuminance"), LossCounts{});
+}
+
 }  // namespace
 }  // namespace atlas

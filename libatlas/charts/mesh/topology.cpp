@@ -39,9 +39,11 @@ Status check_input(const MeshView& mesh) {
   if (largest >= mesh.positions.size()) {
     const auto at = std::find_if(mesh.indices.begin(), mesh.indices.end(),
                                  [&](std::uint32_t v) { return v >= mesh.positions.size(); });
-    return {ErrorCode::bad_input,
-            fmt::format("triangle {}: vertex index {} out of range ({})",
-                        (at - mesh.indices.begin()) / 3, *at, mesh.positions.size())};
+    return {
+        ErrorCode::bad_input,
+        fmt::format("triangle {}: vertex index {} names none of the {} positions (indices count "
+                    "from 0)",
+                    (at - mesh.indices.begin()) / 3, *at, mesh.positions.size())};
   }
   if (!mesh.materials.empty() && mesh.materials.size() != n / 3) {
     return {ErrorCode::bad_input, "mesh: materials must be empty or 1 a triangle"};

@@ -9,6 +9,7 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <set>
+#include <sstream>
 #include <string>
 #include <thread>
 
@@ -48,6 +49,22 @@ TEST_F(AtlasExport, ThePageOfTheReportNamesItsKeys) {
         EXPECT_TRUE(named) << key;
       }
   }
+}
+
+TEST_F(AtlasExport, ThePageOfProgramsExplainsEveryLineOfAStage) {
+  write("box.obj", lit_box(4));
+  const std::string page = slurp(PROGRAMS_PAGE);
+  const RunResult r = run(fmt::format("{0}/box.obj -o {0}/w.wrl", dir_.string()));
+  ASSERT_EQ(r.exit_code, 0) << r.output;
+  std::istringstream lines(r.output);
+  int stages = 0;
+  for (std::string line; std::getline(lines, line);) {
+    if (line.find(" -> ") == line.npos) continue;
+    const std::string stage = line.substr(0, line.find(' '));
+    EXPECT_NE(page.find(fmt::format("| `{}` |", stage)), page.npos) << line;
+    ++stages;
+  }
+  EXPECT_EQ(stages, 11);
 }
 
 TEST_F(AtlasExport, GlbHoldsItsImages) {
@@ -272,6 +289,25 @@ TEST_F(AtlasExport, APlanThatCannotBeCarriedOutSaysSo) {
       run(fmt::format("{0}/box.obj -o {0}/w.wrl --plan --texel 50m", dir_.string()));
   EXPECT_EQ(r.exit_code, 2);
   EXPECT_NE(r.output.find("more than the side of a square"), std::string::npos) << r.output;
+}
+
+TEST_F(AtlasExport, ValuesThatMayBeLightAreNamed) {
+  const auto ply = [&](const std::string& name) {
+    write("t.ply",
+          "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty "
+          "float z\nproperty float " +
+              name +
+              "\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n"
+              "0 0 0 5\n1 0 0 6\n0 1 0 7\n3 0 1 2\n");
+    const RunResult r =
+        run(fmt::format("{0}/t.ply -o {0}/w.wrl --atlases 1 --atlas-size 64", dir_.string()));
+    EXPECT_EQ(r.exit_code, 0) << r.output;
+    return r.output;
+  };
+  EXPECT_NE(ply("intensity").find("not read as light: intensity of the vertices"),
+            std::string::npos);
+  EXPECT_EQ(ply("illuminance").find("not read as light"), std::string::npos);
+  EXPECT_EQ(ply("alpha").find("not read as light"), std::string::npos);
 }
 
 TEST_F(AtlasExport, UnlitSceneGivesPlainUvs) {

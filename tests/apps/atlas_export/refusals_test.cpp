@@ -221,6 +221,16 @@ TEST_F(AtlasExport, TooManyChartsForThePagesNamesTheOptions) {
                           "--atlases or a larger --atlas-size, or a lower --min-side or --mips)"),
             std::string::npos)
       << r.output;
+  for (const char* mips : {"0", "5"}) {
+    const RunResult plain =
+        run(fmt::format("{0} -o {1}/w.obj --charts-only --square --atlas-size "
+                        "64 --mips {2}",
+                        scene.string(), dir_.string(), mips));
+    const bool refused = *mips == '5';
+    EXPECT_EQ(plain.exit_code, refused ? 1 : 0) << plain.output;
+    EXPECT_EQ(plain.output.find("or a lower --mips)") != std::string::npos, refused)
+        << plain.output;
+  }
 }
 
 TEST_F(AtlasExport, LightOnNoArea) {

@@ -150,6 +150,15 @@ TEST_F(AtlasPlay, AStaticLightIsOnePass) {
   EXPECT_NE(r.output.find(", 1 shadow maps begun"), std::string::npos) << r.output;
 }
 
+// Whoever follows the advice to try --headless would otherwise see nothing at all.
+TEST_F(AtlasPlay, AHeadlessRunThatWritesNoPictureSaysSo) {
+  const std::string bare = "roof.obj --headless --software --width 16 --height 12 --map 32";
+  const std::string advice = "no picture was written (--screenshot FILE.png";
+  EXPECT_NE(run(bare).output.find(advice), std::string::npos);
+  for (const char* kept : {" --screenshot a.png", " --record film", " -q"})
+    EXPECT_EQ(run(bare + kept).output.find(advice), std::string::npos) << kept;
+}
+
 TEST_F(AtlasPlay, RecordsEveryFrameFromTheCameraAskedFor) {
   const std::string common =
       "roof.obj --headless --software -q --width 32 --height 16 --map 32 --frames 3 --up z "
