@@ -96,6 +96,9 @@ void add_chart_options(CLI::App& app, ExportCommand& command) {
   app.add_flag("--square", options.square_plain_page,
                "Uvs without light on a square page; else its shape is what packs best, and is "
                "printed");
+  app.add_flag("--udim", options.udim,
+               "Uvs without light on square UDIM tiles, 1001 to as many as --atlases says, instead "
+               "of pages with a material each (.obj)");
 }
 
 void add_texture_options(CLI::App& app, ExportOptions& options, RawText& raw) {

@@ -7,7 +7,7 @@ namespace atlas::app {
 namespace {
 
 using FlagName = std::pair<std::string_view, std::string_view>;
-constexpr std::array<FlagName, 27> kFlagNames{{
+constexpr std::array<FlagName, 28> kFlagNames{{
     {"ExportOptions::atlases", "--atlases"},
     {"ExportOptions::plain_pages", "--atlases"},
     {"ExportOptions::atlas_size", "--atlas-size"},
@@ -22,6 +22,7 @@ constexpr std::array<FlagName, 27> kFlagNames{{
     {"ExportOptions::charts_only", "--charts-only"},
     {"ExportOptions::keep_scene", "--keep-scene"},
     {"ExportOptions::uv_set", "--uv-set"},
+    {"ExportOptions::udim", "--udim"},
     {"ExportOptions::quantity", "--quantity"},
     {"ExportOptions::split_at_light", "--across-light"},
     {"ChartOptions::cone_degrees", "--cone"},

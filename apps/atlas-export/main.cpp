@@ -27,10 +27,11 @@ void print_plan(const ExportPlan& plan, app::Terminal& terminal) {
   }
 }
 
-void print_result(const ExportReport& report, bool kept, app::Terminal& terminal) {
+void print_result(const ExportReport& report, const ExportOptions& options,
+                  app::Terminal& terminal) {
   if (!report.lit) {
     terminal.line(fmt::format("The scene carries no illumination: the result has plain uvs and {}.",
-                              kept ? "no light" : "no images"));
+                              options.keep_scene ? "no light" : "no images"));
   }
   const std::size_t pages = report.pages.size();
   std::vector<Extent> plain;
@@ -41,7 +42,7 @@ void print_result(const ExportReport& report, bool kept, app::Terminal& terminal
                             plain.empty()
                                 ? fmt::format("{:.1f} MiB of graphics memory",
                                               double(report.gpu_bytes) / (1024.0 * 1024.0))
-                                : plain_pages_text(plain)));
+                                : plain_pages_text(plain, options.udim)));
 }
 
 // Names what a scene without light has at its vertices, which may be light under another name.
@@ -254,7 +255,7 @@ Status run(const app::ExportCommand& command, app::Terminal& terminal) {
       *loaded, options, [&](const StageReport& stage) { terminal.line(stage_line(stage)); },
       context);
   if (!report.ok()) return report.status();
-  print_result(*report, command.options.keep_scene, terminal);
+  print_result(*report, command.options, terminal);
   if (!command.options.charts_only && !command.options.keep_scene)
     name_unread_values(loaded->scene, terminal);
   for (const std::string& line : report->not_kept) terminal.line("not kept: " + line);

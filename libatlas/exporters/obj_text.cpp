@@ -1,9 +1,23 @@
 #include "libatlas/exporters/obj_text.h"
 
+#include <fmt/format.h>
+
 #include "libatlas/scene/obj_names.h"
 #include "libatlas/scene/scene.h"
 
 namespace atlas {
+namespace {
+
+// Returns uv + whole as decimals. Ten of them keep uvs apart that differ as floats of the page, as
+// the floats of far tiles do not.
+std::string in_tile(float uv, std::uint32_t whole) {
+  std::string text = fmt::format("{:.10f}", double(uv) + whole);
+  text.erase(text.find_last_not_of('0') + 1);
+  if (text.back() == '.') text.pop_back();
+  return text;
+}
+
+}  // namespace
 
 void write_obj_head(TextFile& file, const World& world, const std::filesystem::path& mtl) {
   if (!world.title.empty()) file.write("# " + one_line(world.title) + "\n");
@@ -29,7 +43,12 @@ void write_obj_uvs(TextFile& file, const World& world, std::span<const std::uint
                    const Context& context) {
   file.write_items(uvs.size(), context, [&](TextBuffer& out, std::size_t i) {
     out.text("vt ");
-    out.uv(world.uvs[uvs[i]]);
+    const Vec2f uv = world.uvs[uvs[i]];
+    const std::uint32_t tile = world.uv_tiles.empty() ? 0 : world.uv_tiles[uvs[i]];
+    if (tile == 0)
+      out.uv(uv);
+    else
+      out.text(in_tile(uv.x, tile % 10) + ' ' + in_tile(uv.y, tile / 10));
     out.character('\n');
   });
 }

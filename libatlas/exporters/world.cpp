@@ -80,6 +80,9 @@ Status check_world(const World& world) {
   if (Status s = check_viewpoint(world.viewpoint); !s.ok()) return s;
   if (!(world.metres_per_unit > 0) || !std::isfinite(world.metres_per_unit))
     return wrong(fmt::format("metres_per_unit is {} (must be above 0)", world.metres_per_unit));
+  if (!world.uv_tiles.empty() && world.uv_tiles.size() != world.uvs.size())
+    return wrong(
+        fmt::format("it has tiles of {} uvs, and {} uvs", world.uv_tiles.size(), world.uvs.size()));
   for (std::size_t i = 0; i < world.pages.size(); ++i) {
     const Page& page = world.pages[i];
     if (page.indices.size() % 3 != 0 || page.indices.size() != page.uv_indices.size()) {
@@ -95,6 +98,10 @@ Status check_world(const World& world) {
     }
   }
   return world.scene ? check_kept_scene(world) : Status();
+}
+
+Status check_no_tiles(const World& world) {
+  return world.uv_tiles.empty() ? Status() : wrong("it has UDIM tiles, which only OBJ has");
 }
 
 std::string encode_uri(const std::string& name) {

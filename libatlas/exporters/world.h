@@ -46,6 +46,9 @@ struct World {
   std::vector<Vec3f> positions = {};  // finite; shared by all pages
   std::vector<Vec2f> uvs = {};        // finite, 0..1, origin bottom left
   std::vector<Page> pages = {};
+  // The UDIM tile of each uv, counted from 0 (tile 1001); empty: all are in the first. A uv of tile
+  // n is written as (u + n mod 10, v + n / 10). Only OBJ has tiles.
+  std::vector<std::uint32_t> uv_tiles = {};
   std::string title = {};
   std::vector<std::string> info = {};  // one line each, for WorldInfo and comments
   Viewpoint viewpoint = {};
@@ -74,10 +77,11 @@ struct WorldFile {
 };
 
 // Writers check the world first (bad_input: an index out of range, a number that is not finite or
-// beyond float, lists of unequal length). They write under the temporary names of `files` and leave
-// committing to the caller, so that a world and its images appear together or not at all. Numbers
-// are the shortest decimals that read back to the same float (or double, if the origin is not 0),
-// so equal positions are equal text. Other errors: io, cancelled.
+// beyond float, lists of unequal length, tiles in a format that has none). They write under the
+// temporary names of `files` and leave committing to the caller, so that a world and its images
+// appear together or not at all. Numbers are the shortest decimals that read back to the same float
+// (or double, if the origin is not 0), so equal positions are equal text. Other errors: io,
+// cancelled.
 
 // Writes VRML97, gzipped if the name ends in .wrz. World::scene is refused (bad_option). Each page
 // is a Shape: an IndexedFaceSet of triangles with explicit texCoordIndex, unlit (no Material)
@@ -155,6 +159,9 @@ std::filesystem::path file_beside(const std::filesystem::path& path);
 
 // The check that all writers begin with.
 Status check_world(const World& world);
+
+// Refuses a world of UDIM tiles, for formats that have none.
+Status check_no_tiles(const World& world);
 
 // Returns the file name of a page's image without its extension: world.wrl gives world_0, world_1,
 // ...

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <utility>
 
 #include "libatlas/uvs/round_uvs.h"
@@ -26,6 +27,21 @@ AssembledWorld assemble_world(const Scene& scene, const PlacedCharts& placed, co
     if (!mesh.one_sided.empty()) page.one_sided.push_back(mesh.one_sided[t]);
   }
   return assembled;
+}
+
+void make_tiles(const PlacedCharts& placed, World& world) {
+  Page all;
+  for (const Page& page : world.pages) {
+    all.indices.insert(all.indices.end(), page.indices.begin(), page.indices.end());
+    all.uv_indices.insert(all.uv_indices.end(), page.uv_indices.begin(), page.uv_indices.end());
+  }
+  world.pages.assign(1, std::move(all));
+  world.uv_tiles.resize(world.uvs.size());
+  for (const ChartPlacement& placement : placed.placements) {
+    const Chart& chart = placed.charts.charts[placement.chart];
+    std::fill_n(world.uv_tiles.begin() + chart.first_uv, chart.uv_count,
+                std::uint32_t(placement.page));
+  }
 }
 
 std::string thin_triangles_text(std::uint64_t thin, std::uint64_t triangles) {

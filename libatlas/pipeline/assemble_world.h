@@ -25,12 +25,16 @@ struct AssembledWorld {
 AssembledWorld assemble_world(const Scene& scene, const PlacedCharts& placed, const WorldMesh& mesh,
                               bool baked);
 
+// Turns the pages of a world without images into UDIM tiles, of which all triangles share one page.
+void make_tiles(const PlacedCharts& placed, World& world);
+
 // Returns the message for users of a world with thin triangles.
 std::string thin_triangles_text(std::uint64_t thin, std::uint64_t triangles);
 
-// Turns a world of one page into one that keeps its scene (World::scene), with all corners as the
-// scene has them. Triangles that were reversed for their charts get their orientation back, because
-// the scene's normals and materials are for that side. Their uvs are then clockwise.
+// Turns a world of one page or of tiles into one that keeps its scene (World::scene), with all
+// corners as the scene has them. Triangles that were reversed for their charts get their
+// orientation back, because the scene's normals and materials are for that side. Their uvs are then
+// clockwise.
 void keep_scene(const Scene& scene, const ChartSet& charts, World& world);
 
 }  // namespace atlas

@@ -16,6 +16,19 @@ Status out_of_range(const char* field, const std::string& range) {
   return {ErrorCode::bad_option, fmt::format("ExportOptions::{} must be {}", field, range)};
 }
 
+Status check_udim(const ExportOptions& o) {
+  constexpr std::uint32_t kMostTiles = 8999;  // 1001 to 9999
+  if (!o.udim) return {};
+  if (lower_extension(o.target) != ".obj" && !o.target.empty())
+    return {ErrorCode::bad_option,
+            "ExportOptions::udim: only programs that read .obj know UDIM tiles (name an .obj, or "
+            "leave ExportOptions::udim out)"};
+  if (o.plain_pages > kMostTiles)
+    return out_of_range("plain_pages",
+                        fmt::format("within 1..{} with ExportOptions::udim", kMostTiles));
+  return {};
+}
+
 }  // namespace
 
 Status check_options(const ExportOptions& o) {
@@ -27,11 +40,12 @@ Status check_options(const ExportOptions& o) {
             ".obj)"};
   }
   if (o.plain_pages < 1) return out_of_range("plain_pages", "at least 1");
-  if (o.keep_scene && o.plain_pages > 1) {
+  if (o.keep_scene && o.plain_pages > 1 && !o.udim) {
     return {ErrorCode::bad_option,
             "ExportOptions::keep_scene: a scene that is kept has its uvs on one page (leave out "
-            "ExportOptions::plain_pages)"};
+            "ExportOptions::plain_pages, or add ExportOptions::udim)"};
   }
+  if (Status s = check_udim(o); !s.ok()) return s;
   if (o.uv_set < 0 || o.uv_set > 7) return out_of_range("uv_set", "within 1..7, or 0");
   if (o.uv_set > 0 && (!o.keep_scene || lower_extension(o.target) == ".obj")) {
     return {ErrorCode::bad_option,

@@ -43,6 +43,11 @@ struct ExportOptions {
   // Otherwise it has the shape that packs best, and textures for these uvs must have that shape.
   bool square_plain_page = false;
 
+  // Square pages of plain uvs become UDIM tiles, from 1001 on: the file has the scene's materials
+  // (keep_scene) or a single one instead of one per page. Needs an .obj and at most 8999
+  // plain_pages, and scenes with light need charts_only.
+  bool udim = false;
+
   // As mip_levels, for plain uvs; 0..kMostMipLevels. With 0, charts keep two texels between each
   // other, which bilinear lookups need.
   std::int32_t plain_mip_levels = 0;

@@ -383,8 +383,11 @@ class Export {
 
 }  // namespace
 
-std::string plain_pages_text(std::span<const Extent> pages) {
+std::string plain_pages_text(std::span<const Extent> pages, bool udim) {
   const Extent page = pages[0];
+  if (pages.size() > 1 && udim)
+    return fmt::format("uvs of UDIM tiles 1001 to {0}, packed for {1} x {1} texels each",
+                       1000 + pages.size(), page.width);
   if (pages.size() > 1)
     return fmt::format("uvs of {0} square pages, packed for {1} x {1} texels", pages.size(),
                        page.width);

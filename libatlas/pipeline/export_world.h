@@ -30,6 +30,6 @@ Result<ExportReport> export_world(const LoadedScene& loaded, const ExportOptions
 
 // Returns the message that tells users of plain uvs about their pages (there must be at least one).
 // The uvs run from 0 to 1 along both sides of each page.
-std::string plain_pages_text(std::span<const Extent> pages);
+std::string plain_pages_text(std::span<const Extent> pages, bool udim);
 
 }  // namespace atlas

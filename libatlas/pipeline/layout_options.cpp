@@ -17,7 +17,8 @@ std::int32_t plain_page_size(const ChartSet& charts, const ExportOptions& option
     longest = std::max(longest, chart.size.x);
     area += chart.distortion.uv_area;
   }
-  const double filled = options.square_plain_page ? 1 : area / (kExpectedFill * longest * longest);
+  const double filled =
+      options.square_plain_page || options.udim ? 1 : area / (kExpectedFill * longest * longest);
   const double width = std::min(1.0, filled);
   const double wanted = kTexelsAChart * double(charts.charts.size());
   std::int32_t side = options.atlas_size;
@@ -47,7 +48,7 @@ LayoutOptions layout_options(const ChartSet& charts, const ExportOptions& option
     layout.minimum_side = 0;
     if (options.plain_mip_levels > 0)
       layout.remedy += ", or a lower ExportOptions::plain_mip_levels";
-    layout.square = options.square_plain_page || options.plain_pages > 1;
+    layout.square = options.square_plain_page || options.plain_pages > 1 || options.udim;
     layout.free_aspect = !layout.square;
   }
   return layout;

@@ -275,6 +275,11 @@ Status check_plan(const ExportPlan& plan, const ExportOptions& options) {
             "its own (add "
             "ExportOptions::charts_only to get uvs without light)"};
   }
+  if (options.udim && plan.bake) {
+    return {ErrorCode::bad_option,
+            "ExportOptions::udim: this scene carries light, whose pages are images with materials "
+            "of their own (add ExportOptions::charts_only, or leave ExportOptions::udim out)"};
+  }
   for (const ExtraFile& file : options.extra_files)
     if (Status s = check_writable(file.path); !s.ok()) return s;
   if (!target.empty()) {

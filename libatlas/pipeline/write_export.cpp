@@ -95,7 +95,8 @@ World make_world(const ExportToWrite& made, const WorldMesh& mesh, ExportReport&
                                  ? draw_once(placed, mesh.uv_indices, world.uvs, context)
                                  : drawn_twice(placed, mesh.uv_indices, world.uvs, context);
     report.texels_drawn_twice = drawn.after;
-    world.info.push_back(plain_pages_text(made.layout.pages));
+    world.info.push_back(plain_pages_text(made.layout.pages, options.udim));
+    if (options.udim) make_tiles(placed, world);
   } else {
     for (std::size_t p = 0; p < made.layout.pages.size(); ++p)
       world.info.push_back(

@@ -47,6 +47,24 @@ TEST(Worlds, WhatIsWrittenIsCounted) {
   }
 }
 
+// A uv of tile n lies n mod 10 to the right and n / 10 above, with as many digits as in the first.
+TEST(Worlds, OnlyObjHasUdimTiles) {
+  World world = two_pages();
+  world.uvs = {{0.25f, 0.125f}, {1, 0}, {0.1f, 0x1p-20f}, {0, 1}};
+  world.uv_tiles = {0, 9, 10, 8998};
+  world.pages[1].uv_indices = {2, 1, 3};
+  const TempFolder folder;
+  ASSERT_TRUE(write_kept(world, folder / "w.obj").ok());
+  const std::string obj = TempFolder::read(folder / "w.obj");
+  EXPECT_NE(obj.find("vt 0.25 0.125\nvt 10 0\nvt 0.1000000015 1.0000009537\nvt 8 900\n"),
+            std::string::npos)
+      << obj;
+  for (const char* name : {"w.wrl", "w.wrz", "w.gltf", "w.glb"})
+    EXPECT_EQ(write_kept(world, folder / name).status().code(), ErrorCode::bad_input) << name;
+  world.uv_tiles.pop_back();
+  EXPECT_EQ(write_kept(world, folder / "w.obj").status().code(), ErrorCode::bad_input);
+}
+
 // Each corner has a uv of its own here.
 TEST(Worlds, WhatIsWrittenOfScenesIsCounted) {
   for (const std::string name : {"w.obj", "w.gltf", "w.glb"}) {

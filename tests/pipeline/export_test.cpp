@@ -242,7 +242,7 @@ TEST(Export, ChartsOnlyNeedsNoLight) {
     return text.str().find("# " + line + "\n") != std::string::npos;
   };
   EXPECT_NE(page.width, page.height);
-  EXPECT_TRUE(has_line(plain_pages_text({&page, 1})));
+  EXPECT_TRUE(has_line(plain_pages_text({&page, 1}, false)));
   options.square_plain_page = true;
   const auto square = export_world(scene, options, {}, {});
   ASSERT_TRUE(square.ok()) << square.status().message();
