@@ -51,7 +51,7 @@ Image8 picture(const Scene& scene, const Camera& camera, const RenderOptions& op
   return r.read_image();
 }
 
-// Returns a camera that sees nothing but the cover, or, from below it, its shadow.
+// Returns a camera that sees the cover alone, or from below it (at y = 1) its shadow alone.
 Camera over(double height) {
   Camera c;
   c.eye = {0, height, 0};
