@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "libatlas/core/glm_bridge.h"
+#include "libatlas/view/mask_colours.h"
 
 namespace atlas {
 namespace {
@@ -52,7 +53,19 @@ GlBuffer colour_buffer(const ViewScene& scene) {
   return buffer_of(packed);
 }
 
-Result<GlTexture> texture_of(const Texture& texture) {
+// Returns the least alpha that is shown of a texture, as a byte; 0 if all of it is.
+int least_alpha(const ViewScene& scene, std::size_t texture) {
+  float least = 2;  // more than any alpha
+  bool used = false;
+  for (const ViewScene::Cluster& c : scene.clusters) {
+    if (c.look.texture != std::int32_t(texture)) continue;
+    least = std::min(least, c.look.cutoff);
+    used = true;
+  }
+  return used ? int(std::ceil(std::max(least, 0.0f) * 255)) : 0;
+}
+
+Result<GlTexture> texture_of(const Texture& texture, int least) {
   const Image8& image = texture.image;
   GLint largest = 0;
   glGetIntegerv(GL_MAX_TEXTURE_SIZE, &largest);
@@ -70,6 +83,7 @@ Result<GlTexture> texture_of(const Texture& texture) {
                                              : image.texels[i * n + (c == 3   ? n - 1
                                                                      : n >= 3 ? c
                                                                               : 0)];
+  if (least > 0) spread_mask_colours(rgba, image.width, image.height, least);
   const int levels = std::bit_width(unsigned(std::max(image.width, image.height)));
   GlTexture t = make_texture(GL_SRGB8_ALPHA8, image.width, image.height, levels);
   glTextureSubImage2D(t.get(), 0, 0, 0, image.width, image.height, GL_RGBA, GL_UNSIGNED_BYTE,
@@ -106,8 +120,8 @@ void make_samplers(GpuScene& gpu) {
 }
 
 Status upload_textures(const ViewScene& scene, GpuScene& gpu) {
-  for (const Texture& texture : scene.textures) {
-    Result<GlTexture> made = texture_of(texture);
+  for (std::size_t i = 0; i < scene.textures.size(); ++i) {
+    Result<GlTexture> made = texture_of(scene.textures[i], least_alpha(scene, i));
     if (!made.ok()) return made.status();
     gpu.textures.push_back(std::move(made.value()));
   }

@@ -167,7 +167,7 @@ std::string fragment_text(const ShaderFeatures& f) {
   if (!lit(f) && coloured(f)) s += kEncode;
   if (f.holes) s += "layout(location = 0) uniform float cutoff;\n";
   s += "void main() {\n";
-  if (f.holes) s += "  if (texture(diffuse, v_texcoord).a < cutoff) discard;\n";
+  if (f.holes) s += "  if (textureLod(diffuse, v_texcoord, 0.0).a < cutoff) discard;\n";
   if (coloured(f)) s += colours_text(f);
   if (lit(f)) {
     s += coloured(f) ? "  result = surface_of(v_normal, reflectance, own);\n"

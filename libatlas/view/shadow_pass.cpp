@@ -29,7 +29,7 @@ layout(location = 3) in vec2 v_texcoord;
 layout(location = 4) uniform float cutoff;
 layout(binding = 0) uniform sampler2D diffuse;
 void main() {
-  if (texture(diffuse, v_texcoord).a < cutoff) discard;
+  if (textureLod(diffuse, v_texcoord, 0.0).a < cutoff) discard;
 }
 )";
 
