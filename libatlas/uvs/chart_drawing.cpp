@@ -59,15 +59,52 @@ ChartDrawing::Snapped ChartDrawing::snapped(std::size_t triangle) const {
   return {at_[c[0]], at_[c[1]], at_[c[2]]};
 }
 
+// Returns where the triangle's corners lie if those in doubt are rounded so that it has the least
+// area.
+ChartDrawing::Snapped ChartDrawing::turned_most(std::size_t triangle) const {
+  Snapped least = snapped(triangle);
+  for (std::size_t k = 0; k < 3; ++k) {
+    const glm::i8vec2 doubt = doubt_[corners_[3 * triangle + k]];
+    for (int axis = 0; axis < 2; ++axis) {
+      if (doubt[axis] == 0) continue;
+      Snapped other = least;
+      other[k][axis] += doubt[axis];
+      if (twice_area(other) < twice_area(least)) least = other;
+    }
+  }
+  return least;
+}
+
+// Calls visit() with the corners of the triangle where it is turned over, and where it may be.
+template <class Visit>
+void ChartDrawing::visit_turned(std::size_t triangle, const Visit& visit) const {
+  const Snapped nominal = snapped(triangle), least = turned_most(triangle);
+  if (twice_area(nominal) < 0) visit(nominal);
+  if (least != nominal && twice_area(least) < 0) visit(least);
+}
+
+void ChartDrawing::snap() {
+  at_.resize(uvs_.size());
+  doubt_.resize(uvs_.size());
+  const glm::dvec2 scale = page_ * double(kDrawnSteps), slack = kUvSlack * scale;
+  for (std::size_t i = 0; i < uvs_.size(); ++i) {
+    const glm::dvec2 p = to_dvec(moved_[i]) * scale + 0.5;
+    at_[i] = glm::i64vec2(p);
+    for (int axis = 0; axis < 2; ++axis) {
+      const double above = p[axis] - double(at_[i][axis]);
+      doubt_[i][axis] = above < slack[axis] ? -1 : above > 1 - slack[axis] ? 1 : 0;
+    }
+  }
+}
+
 std::size_t ChartDrawing::texels_drawn_twice(glm::ivec2 steps) {
   if (corners_.empty()) return 0;
   moved(steps);
-  at_.resize(uvs_.size());
+  snap();
   glm::i64vec2 low(INT64_MAX), high(INT64_MIN);
   for (std::size_t i = 0; i < uvs_.size(); ++i) {
-    at_[i] = glm::i64vec2(to_dvec(moved_[i]) * page_ * double(kDrawnSteps) + 0.5);
-    low = glm::min(low, at_[i]);
-    high = glm::max(high, at_[i]);
+    low = glm::min(low, at_[i] + glm::min(glm::i64vec2(doubt_[i]), glm::i64vec2(0)));
+    high = glm::max(high, at_[i] + glm::max(glm::i64vec2(doubt_[i]), glm::i64vec2(0)));
   }
   box_ = {int(low.x >> kDrawnBits), int(low.y >> kDrawnBits), 0, 0};
   box_.width = int(high.x >> kDrawnBits) + 1 - box_.x;
@@ -75,7 +112,7 @@ std::size_t ChartDrawing::texels_drawn_twice(glm::ivec2 steps) {
   row_words_ = std::size_t(box_.width + 63) / 64;
   once_.assign(row_words_ * std::size_t(box_.height), 0);
   twice_.assign(once_.size(), 0);
-  for (std::size_t t = 0; t < corners_.size() / 3; ++t) draw(snapped(t));
+  for (std::size_t t = 0; t < corners_.size() / 3; ++t) draw(t);
   std::size_t count = 0;
   for (const std::uint64_t word : twice_) count += std::size_t(std::popcount(word));
   return count;
@@ -84,16 +121,17 @@ std::size_t ChartDrawing::texels_drawn_twice(glm::ivec2 steps) {
 // A triangle that is turned over lies on triangles that cover all of its texels already, so it
 // draws all of them twice. Which of the texels on its edges it draws depends on which way up the
 // page is drawn, so all of these count.
-void ChartDrawing::draw(const Snapped& triangle) {
-  const std::int64_t area = twice_area(triangle);
-  const TexelTriangle p = scaled(triangle, 1.0 / kDrawnSteps);
-  if (area > 0) {
-    scan_triangle<kDrawnBits>(p, box_, kCentre,
+void ChartDrawing::draw(std::size_t triangle) {
+  const Snapped c = snapped(triangle);
+  if (twice_area(c) > 0) {
+    scan_triangle<kDrawnBits>(scaled(c, 1.0 / kDrawnSteps), box_, kCentre,
                               [&](int y, int x0, int x1) { mark(y, x0, x1, false); });
-  } else if (area < 0) {
-    scan_triangle<kDrawnBits, EdgeRule::closed>(
-        p, box_, kCentre, [&](int y, int x0, int x1) { mark(y, x0, x1, true); });
   }
+  visit_turned(triangle, [&](const Snapped& turned) {
+    scan_triangle<kDrawnBits, EdgeRule::closed>(
+        scaled(turned, 1.0 / kDrawnSteps), box_, kCentre,
+        [&](int y, int x0, int x1) { mark(y, x0, x1, true); });
+  });
 }
 
 void ChartDrawing::mark(int y, int x0, int x1, bool turned) {
@@ -111,9 +149,7 @@ void ChartDrawing::mark(int y, int x0, int x1, bool turned) {
 std::vector<std::uint32_t> ChartDrawing::hits_of_turned() {
   std::vector<std::uint32_t> hits(std::size_t(kDrawnSteps) * kDrawnSteps, 0);
   texels_drawn_twice({0, 0});  // for at_
-  for (std::size_t t = 0; t < corners_.size() / 3; ++t) {
-    const Snapped c = snapped(t);
-    if (twice_area(c) >= 0) continue;
+  const auto count = [&](const Snapped& c) {
     const auto [x_low, x_high] = std::minmax({c[0].x, c[1].x, c[2].x});
     const auto [y_low, y_high] = std::minmax({c[0].y, c[1].y, c[2].y});
     const Rect box{int(x_low), int(y_low), int(x_high - x_low) + 1, int(y_high - y_low) + 1};
@@ -123,7 +159,8 @@ std::vector<std::uint32_t> ChartDrawing::hits_of_turned() {
       std::uint32_t* row = &hits[std::size_t((kDrawnSteps / 2 - y) & kLast) * kDrawnSteps];
       for (int x = x0; x < x1; ++x) ++row[(kDrawnSteps / 2 - x) & kLast];
     });
-  }
+  };
+  for (std::size_t t = 0; t < corners_.size() / 3; ++t) visit_turned(t, count);
   return hits;
 }
 

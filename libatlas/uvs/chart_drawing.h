@@ -4,6 +4,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <glm/ext/vector_int2_sized.hpp>
 #include <glm/vec2.hpp>
 #include <span>
 #include <vector>
@@ -23,7 +24,9 @@ struct UvRange {
 };
 
 // Draws triangles that are counter-clockwise and do not overlap, after rounding their corners like
-// this. Triangles thinner than a step may then be turned over, and lie on their neighbours.
+// this. Triangles thinner than a step may then be turned over, and lie on their neighbours. Where a
+// corner lies so near to half a step that decimals or single precision may round it the other way
+// (kUvSlack in thin_uvs.h), triangles that would be turned over by that count as turned over.
 class ChartDrawing {
  public:
   // `corners` are three per triangle, uvs of the range. Triangles that name a uv twice are not
@@ -48,15 +51,20 @@ class ChartDrawing {
  private:
   using Snapped = std::array<glm::i64vec2, 3>;
   Snapped snapped(std::size_t triangle) const;
-  void draw(const Snapped& triangle);
+  Snapped turned_most(std::size_t triangle) const;
+  template <class Visit>
+  void visit_turned(std::size_t triangle, const Visit& visit) const;
+  void snap();
+  void draw(std::size_t triangle);
   void mark(int y, int x0, int x1, bool turned);
 
   std::vector<std::uint32_t> corners_;  // three per triangle, into uvs_
   std::span<const Vec2f> uvs_;          // those of the range
   glm::dvec2 page_;
   std::vector<Vec2f> moved_;
-  std::vector<glm::i64vec2> at_;  // positions of moved_, in steps
-  Rect box_;                      // texels
+  std::vector<glm::i64vec2> at_;    // positions of moved_, in steps
+  std::vector<glm::i8vec2> doubt_;  // one per uv: the way to where it may also round to, or 0
+  Rect box_;                        // texels
   std::size_t row_words_ = 0;
   std::vector<std::uint64_t> once_, twice_;  // one bit per texel of the box
 };

@@ -55,6 +55,22 @@ TEST(ChartDrawing, CountsTexelsThatTwoTrianglesCover) {
   }
 }
 
+// The third corner of a sliver lies a twentieth of a step above the opposite side. Rounded up it
+// lies above that side, rounded down below, with 41 centres on the edge from the first corner.
+TEST(ChartDrawing, ASliverThatEitherRoundingMayTurnOverCountsAsTurnedOver) {
+  const auto drawn_twice = [](double third) {
+    const auto uv = [](double x, double y) {
+      return Vec2f{float(x / kWidth), float(y / (kDrawnSteps * kHeight))};
+    };
+    const std::vector<Vec2f> uvs{uv(10.5, 4224), uv(100.5, 4225), uv(50.5, third)};
+    const std::vector<std::uint32_t> corners{0, 1, 2};
+    return ChartDrawing(corners, {0, 3}, uvs, {kWidth, kHeight}).texels_drawn_twice({0, 0});
+  };
+  EXPECT_EQ(drawn_twice(4224.5), 41u);
+  EXPECT_EQ(drawn_twice(4224.5 + 1.0 / 4096), 41u);  // a float further up
+  EXPECT_EQ(drawn_twice(4224.52), 0u);
+}
+
 TEST(ChartDrawing, TrianglesThatNameAUvTwiceAreNotDrawn) {
   const std::vector<Vec2f> uvs{{0, 0}, {1, 0}, {0, 1}};
   const std::vector<std::uint32_t> corners{0, 1, 1, 2, 2, 2, 0, 2, 0};
