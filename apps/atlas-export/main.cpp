@@ -59,15 +59,20 @@ void name_unread_values(const Scene& scene, app::Terminal& terminal) {
       names));
 }
 
-// Names the pages that an earlier export to the same name, with more pages, has left: they are not
-// part of this world.
-void name_old_pages(const ExportReport& report, app::Terminal& terminal) {
+// Names the pages that an earlier export to the same name, with more pages or as EXR, has left:
+// they are not part of this world.
+void name_old_pages(const ExportReport& report, bool exr, app::Terminal& terminal) {
   const std::filesystem::path folder = report.target.parent_path();
-  const auto page = [&](std::size_t p) { return folder / (page_name(report.target, p) + ".png"); };
   if (report.pages.empty() || report.pages[0].image.empty()) return;
-  const std::vector<std::filesystem::path> old = app::files_there(report.pages.size(), page);
-  if (old.empty()) return;
-  terminal.line(app::old_pages_text(old, "export with more pages", "this world"));
+  const auto name = [&](std::size_t written, const char* ending, const char* run) {
+    const auto page = [&](std::size_t p) {
+      return folder / (page_name(report.target, p) + ending);
+    };
+    const std::vector<std::filesystem::path> old = app::files_there(written, page);
+    if (!old.empty()) terminal.line(app::old_pages_text(old, run, "this world"));
+  };
+  name(report.pages.size(), ".png", "export with more pages");
+  name(exr ? report.pages.size() : 0, ".exr", exr ? "export with more pages" : "export with --exr");
 }
 
 StageReport reading_stage(const LoadedScene& loaded, double cpu, double wall) {
@@ -259,7 +264,7 @@ Status run(const app::ExportCommand& command, app::Terminal& terminal) {
   if (!command.options.charts_only && !command.options.keep_scene)
     name_unread_values(loaded->scene, terminal);
   for (const std::string& line : report->not_kept) terminal.line("not kept: " + line);
-  name_old_pages(*report, terminal);
+  name_old_pages(*report, command.options.exr, terminal);
   return write_report(std::move(*report), reading, command, terminal);
 }
 

@@ -195,6 +195,14 @@ TEST_F(System, PagesOfAnEarlierExportAreNamed) {
   EXPECT_NE(r.output.find("w_1.png to w_2.png: of an earlier export"), std::string::npos)
       << r.output;
   EXPECT_TRUE(fs::exists(folder_ / "w_2.png"));
+  folder_.write("w_0.exr", "old");
+  folder_.write("w_1.exr", "old");
+  const std::string exr = run(command).output;
+  EXPECT_NE(exr.find("w_0.exr to w_1.exr: of an earlier export with --exr"), std::string::npos)
+      << exr;
+  const std::string with = run(command + " --exr").output;
+  EXPECT_NE(with.find(to("w_1.exr") + ": of an earlier export with more pages"), std::string::npos)
+      << with;
 }
 
 TEST_F(System, OnlyPagesThatFollowOnThoseOfTheWorldAreOfAnEarlierExport) {
