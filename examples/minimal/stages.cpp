@@ -120,6 +120,21 @@ atlas::Status write_textured(const atlas::Scene& scene, const atlas::ChartSet& c
   return written.ok() ? files.commit() : written.status();
 }
 
+// Stage 5 ends: the light of the fine triangles becomes texels, whose error is measured.
+atlas::Status bake_layout(const atlas::ChartLight& light, const atlas::PageLayout& layout,
+                          atlas::BakeOptions bake, const std::filesystem::path& folder) {
+  bake.page_width = layout.pages[0].width;
+  bake.page_height = layout.pages[0].height;
+  const auto page = atlas::bake_page(light, layout.placements, bake, {});
+  if (!page.ok()) return page.status();
+  auto meter = atlas::FidelityMeter::make(light, layout.placements, {}, {});
+  if (!meter.ok()) return meter.status();
+  meter->add_page(0, page->display);
+  std::printf("5 baking      %llu texels, PSNR %.1f dB\n",
+              static_cast<unsigned long long>(page->covered_texels), meter->result().psnr);
+  return atlas::write_png(folder / "page.png", page->display, {});
+}
+
 atlas::Status run(const std::filesystem::path& mesh_file, const std::filesystem::path& folder) {
   std::filesystem::create_directories(folder);
   auto loaded = atlas::read_scene(mesh_file, {}, {});
@@ -176,17 +191,7 @@ atlas::Status run(const std::filesystem::path& mesh_file, const std::filesystem:
   std::printf("4 packing     page of %d x %d, scale %.3f, %.0f %% used\n", layout->pages[0].width,
               layout->pages[0].height, layout->scale, 100 * layout->uv_utilization);
 
-  // Stage 5 ends: the light of the fine triangles becomes texels, whose error is measured.
-  bake.page_width = layout->pages[0].width;
-  bake.page_height = layout->pages[0].height;
-  const auto page = atlas::bake_page(light, layout->placements, bake, {});
-  if (!page.ok()) return page.status();
-  auto meter = atlas::FidelityMeter::make(light, layout->placements, {}, {});
-  if (!meter.ok()) return meter.status();
-  meter->add_page(0, page->display);
-  if (auto s = atlas::write_png(folder / "page.png", page->display, {}); !s.ok()) return s;
-  std::printf("5 baking      %llu texels, PSNR %.1f dB\n",
-              static_cast<unsigned long long>(page->covered_texels), meter->result().psnr);
+  if (auto s = bake_layout(light, *layout, bake, folder); !s.ok()) return s;
 
   // The light is in the page now, so that a coarser mesh shows the same.
   std::vector<double> texels_per_unit;
