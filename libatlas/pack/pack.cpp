@@ -72,13 +72,14 @@ Active select_items(std::span<const Extent> items, const Cells& cells, const Pac
   const std::int32_t height =
       options.page.height > 0 ? cells.page(options.page.height) : open_side(options, cells);
   for (std::uint32_t i = 0; i < items.size(); ++i) {
-    if (items[i].width == 0 || items[i].height == 0) {
+    if ((items[i].width == 0 || items[i].height == 0) && cells.has_corner(options.page)) {
       result.placements[i] = {0, cells.corner(), cells.corner(), false};
       continue;
     }
     const std::int64_t w = cells.item(items[i].width), h = cells.item(items[i].height);
-    const bool fits = w <= width && h <= height;
-    const bool fits_turned = options.allow_rotation && h <= width && w <= height;
+    const bool area = items[i].area() > 0;
+    const bool fits = area && w <= width && h <= height;
+    const bool fits_turned = area && options.allow_rotation && h <= width && w <= height;
     if (!fits && !fits_turned) {
       result.unplaced.push_back({i, UnplacedReason::too_large});
       continue;
