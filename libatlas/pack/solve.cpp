@@ -37,41 +37,6 @@ void share_with_join(const PackOptions& options, SearchLimits& limits) {
   if (options.effort > 0) limits.layouts -= limits.join_layouts;
 }
 
-SearchLimits limits_for(const Problem& problem, const PackOptions& options, bool strip) {
-  SearchLimits limits;
-  limits.seed = options.seed;
-  // If items may not be turned, beam searches seldom find a better layout than annealing.
-  const bool beams = strip && problem.allow_rotation;
-  if (options.preset == PackPreset::best) {
-    limits.layouts = options.effort;
-    limits.seconds = options.time_budget;
-    limits.chains = 4;
-    if (!strip) share_with_join(options, limits);
-    if (beams) {
-      limits.seconds = kAnnealed * options.time_budget;
-      limits.beam_seconds = (1 - kAnnealed) * options.time_budget;
-      limits.layouts = (options.effort + 2) / 3;
-      limits.beam_states = options.effort > 0 ? options.effort - limits.layouts : UINT64_MAX;
-      if (problem.search_unturned) share_with_unturned(options, limits);
-    }
-    return limits;
-  }
-  limits.other_starts = !strip;
-  limits.join_layouts = strip ? 0 : UINT64_MAX;
-  limits.join_seconds = std::numeric_limits<double>::infinity();
-  const std::uint64_t n = problem.items.size();
-  limits.seconds = std::numeric_limits<double>::infinity();
-  limits.layouts = strip ? 1 + kStripWork / (n * n / 2 + 1000) : standard_page_limits(n).layouts;
-  if (beams) {
-    if (problem.search_unturned) limits.unturned_layouts = limits.layouts;
-    limits.unturned_seconds = limits.seconds;
-    limits.layouts = 1 + limits.layouts / 3;
-    limits.beam_seconds = limits.seconds;
-    limits.beam_states = kBeamWork / (2 * n * n + 1000);
-  }
-  return limits;
-}
-
 Layout better(Layout a, Layout b) {
   return b.better_than(a) ? std::move(b) : std::move(a);
 }
@@ -157,6 +122,41 @@ SearchLimits standard_page_limits(std::size_t items) {
   SearchLimits limits;
   limits.seconds = std::numeric_limits<double>::infinity();
   limits.layouts = 1 + kPageWork / (8 * items + 200);
+  return limits;
+}
+
+SearchLimits limits_for(const Problem& problem, const PackOptions& options, bool strip) {
+  SearchLimits limits;
+  limits.seed = options.seed;
+  // If items may not be turned, beam searches seldom find a better layout than annealing.
+  const bool beams = strip && problem.allow_rotation;
+  if (options.preset == PackPreset::best) {
+    limits.layouts = options.effort;
+    limits.seconds = options.time_budget;
+    limits.chains = 4;
+    if (!strip) share_with_join(options, limits);
+    if (beams) {
+      limits.seconds = kAnnealed * options.time_budget;
+      limits.beam_seconds = (1 - kAnnealed) * options.time_budget;
+      limits.layouts = (options.effort + 2) / 3;
+      limits.beam_states = options.effort > 0 ? options.effort - limits.layouts : UINT64_MAX;
+      if (problem.search_unturned) share_with_unturned(options, limits);
+    }
+    return limits;
+  }
+  limits.other_starts = !strip;
+  limits.join_layouts = strip ? 0 : UINT64_MAX;
+  limits.join_seconds = std::numeric_limits<double>::infinity();
+  const std::uint64_t n = problem.items.size();
+  limits.seconds = std::numeric_limits<double>::infinity();
+  limits.layouts = strip ? 1 + kStripWork / (n * n / 2 + 1000) : standard_page_limits(n).layouts;
+  if (beams) {
+    if (problem.search_unturned) limits.unturned_layouts = limits.layouts;
+    limits.unturned_seconds = limits.seconds;
+    limits.layouts = 1 + limits.layouts / 3;
+    limits.beam_seconds = limits.seconds;
+    limits.beam_states = kBeamWork / (2 * n * n + 1000);
+  }
   return limits;
 }
 
