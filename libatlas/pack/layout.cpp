@@ -34,8 +34,11 @@ struct AtlasLayout::State {
 
   FreeRects fresh_page(std::uint32_t p) const {
     FreeRects free(page);
-    for (const PinnedRect& pin : pins)
-      if (pin.page == p) free.block(cells.pinned(pin.rect, page));
+    for (const PinnedRect& pin : pins) {
+      if (pin.page != p) continue;
+      // One without area takes no space, as in pack_rects.
+      if (const Rect taken = cells.pinned(pin.rect, page); taken.area() > 0) free.block(taken);
+    }
     return free;
   }
 
