@@ -60,7 +60,7 @@ Status check(std::span<const Extent> items, const PackOptions& o) {
 
 // The items that the engines are given, in cells, and their ids.
 struct Active {
-  std::vector<Extent> sizes;
+  std::vector<Extent> sizes, texels;
   std::vector<std::uint32_t> ids;
 };
 
@@ -85,6 +85,7 @@ Active select_items(std::span<const Extent> items, const Cells& cells, const Pac
       continue;
     }
     active.sizes.push_back({static_cast<std::int32_t>(w), static_cast<std::int32_t>(h)});
+    active.texels.push_back(items[i]);
     active.ids.push_back(i);
   }
   return active;
@@ -145,6 +146,7 @@ Result<PackResult> pack_rects(std::span<const Extent> items, const PackOptions& 
 
   Problem problem;
   problem.items = active.sizes;
+  problem.texels = active.texels;
   problem.allow_rotation = options.allow_rotation;
   problem.context = &context;
   const std::int32_t open = open_side(options, cells);

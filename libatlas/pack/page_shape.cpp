@@ -34,12 +34,21 @@ Extent used_cells(const Problem& problem, const Layout& layout) {
   return used;
 }
 
-// Returns the same in texels, with the border.
-Extent used_page(const Problem& problem, const Layout& layout, const PackOptions& options) {
-  const Extent used = used_cells(problem, layout);
+// Enlarges `used`, the texels that are used of a page, so that it holds an item and the border.
+void enclose(const Placement& at, Extent item, const PackOptions& options, Extent& used) {
   const Cells cells(options);
-  const std::int32_t rest = options.border - options.padding;
-  return {cells.texel(used.width) + rest, cells.texel(used.height) + rest};
+  if (at.rotated) std::swap(item.width, item.height);
+  used = {std::max(used.width, cells.texel(at.x) + item.width + options.border),
+          std::max(used.height, cells.texel(at.y) + item.height + options.border)};
+}
+
+// Returns the part of its page, in texels, that a layout of one page uses.
+Extent used_page(const Problem& problem, const Layout& layout, const PackOptions& options) {
+  Extent used;
+  for (std::size_t i = 0; i < problem.items.size(); ++i)
+    if (layout.placements[i].placed())
+      enclose(layout.placements[i], problem.texels[i], options, used);
+  return used;
 }
 
 // Leaves only this share of the effort of `best`.
@@ -132,7 +141,7 @@ class ShapeSolver {
   // page. Its items get the smallest page that items of a single page would get.
   void reshape_last_page(Layout& layout) {
     std::vector<std::uint32_t> ids;
-    std::vector<Extent> items;
+    std::vector<Extent> items, texels;
     Layout last;
     last.pages = 1;
     for (std::uint32_t i = 0; i < layout.placements.size(); ++i) {
@@ -141,11 +150,13 @@ class ShapeSolver {
       at.page = 0;
       ids.push_back(i);
       items.push_back(problem_.items[i]);
+      texels.push_back(problem_.texels[i]);
       last.placements.push_back(at);
     }
     if (ids.empty()) return;
     Problem alone = problem_;
     alone.items = items;
+    alone.texels = texels;
     alone.max_pages = 1;
     PackOptions options = options_;
     share_effort(kForLastPage, options);
@@ -257,17 +268,9 @@ class ShapeSolver {
 // Returns the texels of all pages as they are reported.
 double page_texels(const Problem& problem, const Layout& layout, const PackOptions& options) {
   std::vector<Extent> used(layout.pages);
-  const Cells cells(options);
-  const std::int32_t rest = options.border - options.padding;
-  for (std::size_t i = 0; i < problem.items.size(); ++i) {
-    const Placement& at = layout.placements[i];
-    if (!at.placed()) continue;
-    Extent e = problem.items[i];
-    if (at.rotated) std::swap(e.width, e.height);
-    Extent& page = used[at.page];
-    page.width = std::max(page.width, cells.texel(at.x + e.width) + rest);
-    page.height = std::max(page.height, cells.texel(at.y + e.height) + rest);
-  }
+  for (std::size_t i = 0; i < problem.items.size(); ++i)
+    if (const Placement& at = layout.placements[i]; at.placed())
+      enclose(at, problem.texels[i], options, used[at.page]);
   double texels = 0;
   for (const Extent& page : used) texels += static_cast<double>(shaped_page(page, options).area());
   return texels;

@@ -87,6 +87,16 @@ TEST(Presets, CroppedPagesAreNoLargerThanWithFast) {
   EXPECT_LE(texels(packed(tall, with(PackPreset::standard, o))), least);
   EXPECT_LE(texels(packed(tall, with(PackPreset::best, o))), least);
 
+  // Items that end before their cells of four texels do.
+  const std::vector<Extent> small{{10, 2}, {1, 2}, {4, 2}, {4, 2}, {9, 2},
+                                  {8, 1},  {6, 2}, {8, 1}, {1, 2}};
+  o.page = {19, 19};
+  o.padding = 3;
+  o.alignment = 4;
+  o.square = true;
+  EXPECT_LE(texels(packed(small, with(PackPreset::standard, o))),
+            texels(packed(small, with(PackPreset::fast, o))));
+
   test::Noise noise{11};
   for (int round = 0; round < 60; ++round) {
     const std::int32_t side = noise.in(12, 40);
@@ -94,6 +104,7 @@ TEST(Presets, CroppedPagesAreNoLargerThanWithFast) {
     for (Extent& e : items) e = {noise.in(1, side / 2), noise.in(1, side / 2)};
     o.page = {side, side};
     o.padding = noise.in(0, 3);
+    o.alignment = noise.in(1, 4);
     o.square = noise.in(0, 1);
     o.allow_rotation = noise.in(0, 1);
     const PackResult fast = packed(items, with(PackPreset::fast, o));
