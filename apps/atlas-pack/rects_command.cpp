@@ -34,13 +34,22 @@ bool has_digit(const std::string& field) {
   return field.find_first_of("0123456789") != std::string::npos;
 }
 
-// Splits a line at commas, or at semicolons, tabs or spaces (in this order) if it has none;
-// separators inside quotes do not count.
+// Returns what separates the fields of a line: commas, or semicolons, tabs or spaces (in this
+// order) if it has none. Those inside quotes do not count.
+char separator_of(const std::string& line) {
+  bool quoted = false, semicolon = false, tab = false;
+  for (const char ch : line) {
+    if (ch == '"') quoted = !quoted;
+    if (quoted) continue;
+    if (ch == ',') return ch;
+    semicolon |= ch == ';';
+    tab |= ch == '\t';
+  }
+  return semicolon ? ';' : tab ? '\t' : ' ';
+}
+
 std::vector<std::string> split(const std::string& line) {
-  const char separator = line.find(',') != std::string::npos    ? ','
-                         : line.find(';') != std::string::npos  ? ';'
-                         : line.find('\t') != std::string::npos ? '\t'
-                                                                : ' ';
+  const char separator = separator_of(line);
   std::vector<std::string> fields{""};
   bool quoted = false;
   for (std::size_t i = 0; i < line.size(); ++i) {

@@ -26,6 +26,11 @@ class Cells {
   std::int32_t texel(std::int32_t cell) const { return origin_ + cell * options_.alignment; }
   std::int32_t cell(std::int32_t texel) const { return (texel - origin_) / options_.alignment; }
   std::int32_t corner() const { return origin_; }
+  // Returns whether the corner lies on a page of this size and not on its far border.
+  bool has_corner(Extent page) const {
+    const std::int64_t least = std::int64_t{origin_} + options_.border;
+    return (page.width == 0 || page.width >= least) && (page.height == 0 || page.height >= least);
+  }
 
   // Returns the cells that a pinned rectangle and the padding around it keep free of other items.
   Rect pinned(const Rect& r, Extent page_cells) const {

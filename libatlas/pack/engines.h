@@ -34,11 +34,15 @@ struct SearchLimits {
 // Returns the limits of `standard` for this number of items on pages.
 SearchLimits standard_page_limits(std::size_t items);
 
+// Returns the limits of the preset, for a strip or for pages. No time is NaN, also if the budget is
+// infinite.
+SearchLimits limits_for(const Problem& problem, const PackOptions& options, bool strip);
+
 // Returns the limits of `standard` for these items on a strip, cut to those for joining pages.
 SearchLimits limits_to_join(const Problem& strip, const SearchLimits& pages);
 
-// Solves the problem according to the preset. Fills in page_lower_bound and layouts_tried of
-// the result.
+// Solves the problem according to the preset. Fills in page_lower_bound of the result and adds to
+// its layouts_tried.
 Layout solve(const Problem& problem, const PackOptions& options, const Context& context,
              PackResult& result);
 

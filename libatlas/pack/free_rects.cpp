@@ -1,6 +1,8 @@
 #include "libatlas/pack/free_rects.h"
 
 #include <algorithm>
+#include <iterator>
+#include <tuple>
 
 namespace atlas::pack {
 namespace {
@@ -91,55 +93,93 @@ bool FreeRects::find_contact(Extent item, Spot& spot) const {
   return found;
 }
 
+FreeRects::Beside FreeRects::beside(Side side, const Rect& r, bool fresh) {
+  switch (side) {
+    case Side::left:
+      return {side, fresh, r.x, r.y, r.top(), r};
+    case Side::right:
+      return {side, fresh, -r.right(), r.y, r.top(), r};
+    case Side::below:
+      return {side, fresh, r.y, r.x, r.right(), r};
+    case Side::above:
+      return {side, fresh, -r.top(), r.x, r.right(), r};
+  }
+  return {};
+}
+
 void FreeRects::split(const Rect& f, const Rect& t) {
-  const auto keep = [&](const Rect& r) {
-    if (r.width >= min_width_ && r.height >= min_height_) fresh_.push_back(r);
+  const auto keep = [&](Side side, const Rect& r) {
+    if (r.width >= min_width_ && r.height >= min_height_) beside_.push_back(beside(side, r, true));
   };
-  if (t.x > f.x) keep({f.x, f.y, t.x - f.x, f.height});
-  if (t.right() < f.right()) keep({t.right(), f.y, f.right() - t.right(), f.height});
-  if (t.y > f.y) keep({f.x, f.y, f.width, t.y - f.y});
-  if (t.top() < f.top()) keep({f.x, t.top(), f.width, f.top() - t.top()});
+  if (t.x > f.x) keep(Side::left, {f.x, f.y, t.x - f.x, f.height});
+  if (t.right() < f.right()) keep(Side::right, {t.right(), f.y, f.right() - t.right(), f.height});
+  if (t.y > f.y) keep(Side::below, {f.x, f.y, f.width, t.y - f.y});
+  if (t.top() < f.top()) keep(Side::above, {f.x, t.top(), f.width, f.top() - t.top()});
+}
+
+// Notes a free rectangle that `taken` does not meet, if it touches a side of it.
+void FreeRects::note_neighbour(const Rect& f, const Rect& t) {
+  if (f.y < t.top() && t.y < f.top()) {
+    if (f.right() == t.x) beside_.push_back(beside(Side::left, f, false));
+    if (f.x == t.right()) beside_.push_back(beside(Side::right, f, false));
+  } else if (f.x < t.right() && t.x < f.right()) {
+    if (f.top() == t.y) beside_.push_back(beside(Side::below, f, false));
+    if (f.y == t.top()) beside_.push_back(beside(Side::above, f, false));
+  }
 }
 
 void FreeRects::place(const Rect& rect) {
   placed_.push_back(rect);
   used_height_ = std::max(used_height_, rect.top());
-  fresh_.clear();
+  beside_.clear();
   std::size_t kept = 0;
   for (std::size_t i = 0; i < free_.size(); ++i) {
     const Rect f = free_[i];
-    if (intersect(f, rect))
+    if (intersect(f, rect)) {
       split(f, rect);
-    else
-      free_[kept++] = f;
+      continue;
+    }
+    note_neighbour(f, rect);
+    free_[kept++] = f;
   }
   free_.resize(kept);
   keep_maximal();
   measure_room();
 }
 
-// The rectangles that the placed one does not meet stay maximal: each piece lies within the maximal
-// rectangle from which it was cut, so a rectangle within the piece would have been within that,
-// too. So only the pieces have to be compared, with each other and with the other rectangles.
+// Adds the pieces that are maximal to the free rectangles. The rectangles that the placed one does
+// not meet stay maximal: each piece lies within the maximal rectangle from which it was cut, so a
+// rectangle within the piece would have been within that, too. A piece can only lie within a
+// rectangle that ends at the same side of the placed one: a larger one that ends elsewhere would
+// either meet the placed one, or it would be a piece beside it that does not reach as far along it.
+// So each side is swept from the rectangles that begin farthest from it to the nearest. The front
+// has the ends of those before, without those that lie within others: (low, high), both rising.
+// With thousands of long thin items, all of which have pieces on one side, this takes O(n log n)
+// an item where comparing all pairs took O(n^2).
 void FreeRects::keep_maximal() {
-  std::sort(fresh_.begin(), fresh_.end(), below_left);
-  std::size_t kept = 0;
-  for (std::size_t i = 0; i < fresh_.size(); ++i) {
-    const Rect r = fresh_[i];
-    const auto holds = [&](const Rect& o) { return contains(o, r); };
-    bool inside = i > 0 && kept > 0 && fresh_[kept - 1] == r;
-    for (std::size_t k = 0; k < fresh_.size() && !inside; ++k)
-      // Pieces before `kept` are final, and those after i have not been moved yet. Those in between
-      // are outdated.
-      inside = (k < kept || k > i) && contains(fresh_[k], r) && !(fresh_[k] == r);
-    for (std::size_t k = 0; k < free_.size() && !inside; ++k) {
-      if (free_[k].y > r.y) break;
-      inside = holds(free_[k]);
-    }
-    if (!inside) fresh_[kept++] = r;
+  std::sort(beside_.begin(), beside_.end(), [](const Beside& a, const Beside& b) {
+    return std::tuple(a.side, a.start, a.low, -a.high, a.fresh) <
+           std::tuple(b.side, b.start, b.low, -b.high, b.fresh);
+  });
+  fresh_.clear();
+  front_.clear();
+  for (std::size_t i = 0; i < beside_.size(); ++i) {
+    const Beside& r = beside_[i];
+    if (i > 0 && beside_[i - 1].side != r.side) front_.clear();
+    const auto after =
+        std::upper_bound(front_.begin(), front_.end(), r.low,
+                         [](std::int32_t low, const auto& ends) { return low < ends.first; });
+    if (after != front_.begin() && std::prev(after)->second >= r.high) continue;
+    // What begins at the same place ends before, and what begins behind it may.
+    const bool same = after != front_.begin() && std::prev(after)->first == r.low;
+    const auto first = same ? std::prev(after) : after;
+    const auto last =
+        std::find_if(after, front_.end(), [&](const auto& ends) { return ends.second > r.high; });
+    front_.insert(front_.erase(first, last), {r.low, r.high});
+    if (r.fresh) fresh_.push_back(r.rect);
   }
-  fresh_.resize(kept);
-  const std::size_t middle = free_.size();
+  std::sort(fresh_.begin(), fresh_.end(), below_left);
+  const auto middle = static_cast<std::ptrdiff_t>(free_.size());
   free_.insert(free_.end(), fresh_.begin(), fresh_.end());
   std::inplace_merge(free_.begin(), free_.begin() + middle, free_.end(), below_left);
 }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <utility>
 #include <vector>
 
 #include "libatlas/pack/pack.h"
@@ -68,12 +69,26 @@ class FreeRects {
   bool find_contact(Extent item, Spot& spot) const;
   std::int64_t contact_length(const Rect& rect) const;
   void split(const Rect& free, const Rect& taken);
+  void note_neighbour(const Rect& free, const Rect& taken);
   void keep_maximal();
   std::vector<Rect> free_around(const Rect& rect) const;
   void measure_room();
 
+  enum class Side : std::uint8_t { left, right, below, above };
+  // A free rectangle that ends at a side of the placed one: how far it begins from there (smaller
+  // is farther), and its ends along the side.
+  struct Beside {
+    Side side;
+    bool fresh;  // cut from a free rectangle that the placed one meets
+    std::int32_t start, low, high;
+    Rect rect;
+  };
+  static Beside beside(Side side, const Rect& rect, bool fresh);
+
   Extent page_;
   std::vector<Rect> free_, fresh_, placed_;
+  std::vector<Beside> beside_;
+  std::vector<std::pair<std::int32_t, std::int32_t>> front_;  // see keep_maximal()
   std::int32_t min_width_ = 1, min_height_ = 1;
   std::int32_t used_height_ = 0;
   Room room_;

@@ -34,8 +34,11 @@ struct AtlasLayout::State {
 
   FreeRects fresh_page(std::uint32_t p) const {
     FreeRects free(page);
-    for (const PinnedRect& pin : pins)
-      if (pin.page == p) free.block(cells.pinned(pin.rect, page));
+    for (const PinnedRect& pin : pins) {
+      if (pin.page != p) continue;
+      // One without area takes no space, as in pack_rects.
+      if (const Rect taken = cells.pinned(pin.rect, page); taken.area() > 0) free.block(taken);
+    }
     return free;
   }
 
@@ -85,7 +88,8 @@ Result<std::uint32_t> AtlasLayout::insert(Extent item) {
                                                     "negative)",
                                                     item.width, item.height));
   const auto id = static_cast<std::uint32_t>(s.items.size());
-  if (item.width == 0 || item.height == 0) {
+  const bool area = item.area() > 0;
+  if (!area && s.cells.has_corner(s.options.page)) {
     s.items.push_back({item, {0, s.cells.corner(), s.cells.corner(), false}, true});
     ++s.present;
     return id;
@@ -93,7 +97,7 @@ Result<std::uint32_t> AtlasLayout::insert(Extent item) {
   const std::int64_t w = s.cells.item(item.width), h = s.cells.item(item.height);
   const bool fits = (w <= s.page.width && h <= s.page.height) ||
                     (s.options.allow_rotation && h <= s.page.width && w <= s.page.height);
-  if (!fits)
+  if (!area || !fits)
     return Status(ErrorCode::no_solution,
                   fmt::format("layout: an item of {} x {} is larger than the page (use pages of at "
                               "least that size)",

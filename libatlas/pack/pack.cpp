@@ -60,7 +60,7 @@ Status check(std::span<const Extent> items, const PackOptions& o) {
 
 // The items that the engines are given, in cells, and their ids.
 struct Active {
-  std::vector<Extent> sizes;
+  std::vector<Extent> sizes, texels;
   std::vector<std::uint32_t> ids;
 };
 
@@ -72,18 +72,20 @@ Active select_items(std::span<const Extent> items, const Cells& cells, const Pac
   const std::int32_t height =
       options.page.height > 0 ? cells.page(options.page.height) : open_side(options, cells);
   for (std::uint32_t i = 0; i < items.size(); ++i) {
-    if (items[i].width == 0 || items[i].height == 0) {
+    if ((items[i].width == 0 || items[i].height == 0) && cells.has_corner(options.page)) {
       result.placements[i] = {0, cells.corner(), cells.corner(), false};
       continue;
     }
     const std::int64_t w = cells.item(items[i].width), h = cells.item(items[i].height);
-    const bool fits = w <= width && h <= height;
-    const bool fits_turned = options.allow_rotation && h <= width && w <= height;
+    const bool area = items[i].area() > 0;
+    const bool fits = area && w <= width && h <= height;
+    const bool fits_turned = area && options.allow_rotation && h <= width && w <= height;
     if (!fits && !fits_turned) {
       result.unplaced.push_back({i, UnplacedReason::too_large});
       continue;
     }
     active.sizes.push_back({static_cast<std::int32_t>(w), static_cast<std::int32_t>(h)});
+    active.texels.push_back(items[i]);
     active.ids.push_back(i);
   }
   return active;
@@ -144,6 +146,7 @@ Result<PackResult> pack_rects(std::span<const Extent> items, const PackOptions& 
 
   Problem problem;
   problem.items = active.sizes;
+  problem.texels = active.texels;
   problem.allow_rotation = options.allow_rotation;
   problem.context = &context;
   const std::int32_t open = open_side(options, cells);

@@ -101,13 +101,13 @@ struct PackResult {
 
 // Packs the items into pages. The placements are in input order, and ties are broken by index. An
 // item with a side of 0 takes no space and is reported at the corner of page 0. An item that is
-// larger than the page (border included) is unplaced as too_large. An item that finds no free
-// place, because of max_pages or pinned rectangles, is unplaced as no_room. Negative sides are
-// bad_input. So are items whose total area exceeds 2^62 square texels, or 2^62 cells of alignment ×
-// alignment texels with their padding; items that are too large do not count.
-// Sources: Jylänki 2010 (skyline, waste map, maximal rectangles), Burke et al. 2004 (best fit), Wei
-// et al. 2011 and Leung et al. 2011 (skyline scores, local search); docs/packing.md.
-// Errors: bad_option, bad_input, cancelled.
+// larger than the page (border included) is unplaced as too_large, and so is one with a side of 0
+// if the borders and the alignment leave no such corner. An item that finds no free place, because
+// of max_pages or pinned rectangles, is unplaced as no_room. Negative sides are bad_input. So are
+// items whose total area exceeds 2^62 square texels, or 2^62 cells of alignment × alignment texels
+// with their padding; items that are too large do not count. Sources: Jylänki 2010 (skyline, waste
+// map, maximal rectangles), Burke et al. 2004 (best fit), Wei et al. 2011 and Leung et al. 2011
+// (skyline scores, local search); docs/packing.md. Errors: bad_option, bad_input, cancelled.
 Result<PackResult> pack_rects(std::span<const Extent> items, const PackOptions& options,
                               const Context& context);
 

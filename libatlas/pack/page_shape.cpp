@@ -34,12 +34,21 @@ Extent used_cells(const Problem& problem, const Layout& layout) {
   return used;
 }
 
-// Returns the same in texels, with the border.
-Extent used_page(const Problem& problem, const Layout& layout, const PackOptions& options) {
-  const Extent used = used_cells(problem, layout);
+// Enlarges `used`, the texels that are used of a page, so that it holds an item and the border.
+void enclose(const Placement& at, Extent item, const PackOptions& options, Extent& used) {
   const Cells cells(options);
-  const std::int32_t rest = options.border - options.padding;
-  return {cells.texel(used.width) + rest, cells.texel(used.height) + rest};
+  if (at.rotated) std::swap(item.width, item.height);
+  used = {std::max(used.width, cells.texel(at.x) + item.width + options.border),
+          std::max(used.height, cells.texel(at.y) + item.height + options.border)};
+}
+
+// Returns the part of its page, in texels, that a layout of one page uses.
+Extent used_page(const Problem& problem, const Layout& layout, const PackOptions& options) {
+  Extent used;
+  for (std::size_t i = 0; i < problem.items.size(); ++i)
+    if (layout.placements[i].placed())
+      enclose(layout.placements[i], problem.texels[i], options, used);
+  return used;
 }
 
 // Leaves only this share of the effort of `best`.
@@ -61,11 +70,13 @@ Extent shaped_page(Extent used, const PackOptions& options) {
     const std::int64_t whole = blocks * options.alignment;
     return whole <= (limit > 0 ? limit : kLongestSide) ? static_cast<std::int32_t>(whole) : side;
   };
+  // Items without area use nothing, but an image has a texel at least.
+  used = {std::max(1, used.width), std::max(1, used.height)};
   if (options.page.height == 0 || options.crop)
     page.height = aligned(used.height, options.page.height);
   if (options.page.width == 0 || options.crop) page.width = aligned(used.width, options.page.width);
   const auto round_up = [](std::int32_t v) {
-    return static_cast<std::int32_t>(std::bit_ceil(static_cast<std::uint32_t>(std::max(1, v))));
+    return static_cast<std::int32_t>(std::bit_ceil(static_cast<std::uint32_t>(v)));
   };
   if (options.power_of_two) page = {round_up(page.width), round_up(page.height)};
   if (options.square) page.width = page.height = std::max(page.width, page.height);
@@ -130,7 +141,7 @@ class ShapeSolver {
   // page. Its items get the smallest page that items of a single page would get.
   void reshape_last_page(Layout& layout) {
     std::vector<std::uint32_t> ids;
-    std::vector<Extent> items;
+    std::vector<Extent> items, texels;
     Layout last;
     last.pages = 1;
     for (std::uint32_t i = 0; i < layout.placements.size(); ++i) {
@@ -139,19 +150,19 @@ class ShapeSolver {
       at.page = 0;
       ids.push_back(i);
       items.push_back(problem_.items[i]);
+      texels.push_back(problem_.texels[i]);
       last.placements.push_back(at);
     }
     if (ids.empty()) return;
     Problem alone = problem_;
     alone.items = items;
+    alone.texels = texels;
     alone.max_pages = 1;
     PackOptions options = options_;
     share_effort(kForLastPage, options);
-    const std::uint64_t layouts = result_.layouts_tried;
     const std::uint32_t bound = result_.page_lower_bound;
     ShapeSolver solver(alone, options, context_, result_);
     if (Layout anew = solver.run(); solver.cost(anew) < solver.cost(last)) last = std::move(anew);
-    result_.layouts_tried += layouts;
     result_.page_lower_bound = bound;
     for (std::size_t k = 0; k < ids.size(); ++k) {
       layout.placements[ids[k]] = last.placements[k];
@@ -185,7 +196,8 @@ class ShapeSolver {
     const std::size_t n = problem_.items.size();
     std::size_t count = kWork / (kOrders * n * n + 1);
     if (options_.preset == PackPreset::fast) count /= 10;
-    if (options_.effort > 0) count = std::min<std::size_t>(count, options_.effort / (4 * kOrders));
+    if (options_.preset == PackPreset::best && options_.effort > 0)
+      count = std::min<std::size_t>(count, options_.effort / (4 * kOrders));
     return std::min(count, kMost);
   }
 
@@ -238,13 +250,9 @@ class ShapeSolver {
     PackOptions share = options_;
     share.page.height = 0;  // strips
     share_effort(1 / static_cast<double>(strips.size()), share);
-    std::uint64_t layouts = 0;
-    for (const Strip strip : strips) {
+    for (const Strip strip : strips)
       offer(pack_strip(
           strip, [&](const Problem& tried) { return solve(tried, share, context_, result_); }));
-      layouts += result_.layouts_tried;
-    }
-    result_.layouts_tried = layouts;
     return best;
   }
 
@@ -260,38 +268,49 @@ class ShapeSolver {
 // Returns the texels of all pages as they are reported.
 double page_texels(const Problem& problem, const Layout& layout, const PackOptions& options) {
   std::vector<Extent> used(layout.pages);
-  const Cells cells(options);
-  const std::int32_t rest = options.border - options.padding;
-  for (std::size_t i = 0; i < problem.items.size(); ++i) {
-    const Placement& at = layout.placements[i];
-    if (!at.placed()) continue;
-    Extent e = problem.items[i];
-    if (at.rotated) std::swap(e.width, e.height);
-    Extent& page = used[at.page];
-    page.width = std::max(page.width, cells.texel(at.x + e.width) + rest);
-    page.height = std::max(page.height, cells.texel(at.y + e.height) + rest);
-  }
+  for (std::size_t i = 0; i < problem.items.size(); ++i)
+    if (const Placement& at = layout.placements[i]; at.placed())
+      enclose(at, problem.texels[i], options, used[at.page]);
   double texels = 0;
   for (const Extent& page : used) texels += static_cast<double>(shaped_page(page, options).area());
   return texels;
 }
 
-// Whether a page of this shape is worth packing without turns as well. Strips whose width is given
-// do that by themselves. For more items, packing takes seconds.
-bool worth_unturned(const Problem& problem, const PackOptions& options) {
+// Layouts with smaller costs are better: those of fewer unplaced items, then of fewer pages, then
+// of smaller ones.
+std::tuple<std::uint32_t, std::uint32_t, double> shape_cost(const Problem& problem,
+                                                            const Layout& layout,
+                                                            const PackOptions& options) {
+  return {layout.unplaced, layout.pages, page_texels(problem, layout, options)};
+}
+
+// Whether pages get the shape that their items need, and packing them a second time takes no
+// seconds. Strips whose width is given are made low instead.
+bool is_shaped(const Problem& problem, const PackOptions& options) {
   constexpr std::size_t kMany = 50'000;
   const bool strip = options.page.width != 0 && options.page.height == 0;
   const bool shaped = options.page.width == 0 || options.crop;
-  if (!problem.allow_rotation || !problem.pinned.empty() || strip || !shaped) return false;
-  if (problem.items.size() > kMany) return false;
+  return shaped && !strip && problem.pinned.empty() && problem.items.size() <= kMany;
+}
+
+// Whether the items are worth packing as `fast` does, too. The searches make pages few or strips
+// low, and what they find is not always what can be cropped best.
+bool worth_fast(const Problem& problem, const PackOptions& options) {
+  return is_shaped(problem, options) && options.preset != PackPreset::fast &&
+         options.engine == PackEngine::automatic;
+}
+
+// Whether a page of this shape is worth packing without turns as well. Strips whose width is given
+// do that by themselves.
+bool worth_unturned(const Problem& problem, const PackOptions& options) {
+  if (!problem.allow_rotation || !is_shaped(problem, options)) return false;
   return std::all_of(problem.items.begin(), problem.items.end(), [&](const Extent& e) {
     return e.width <= problem.page.width && e.height <= problem.page.height;
   });
 }
 
-}  // namespace
-
-Layout solve_shape(const Problem& problem, const PackOptions& options, const Context& context,
+// Solves the problem with turns and, where that is worth it, without them.
+Layout solve_turns(const Problem& problem, const PackOptions& options, const Context& context,
                    PackResult& result) {
   if (!worth_unturned(problem, options))
     return ShapeSolver(problem, options, context, result).run();
@@ -301,18 +320,29 @@ Layout solve_shape(const Problem& problem, const PackOptions& options, const Con
   part.allow_rotation = false;
   share_effort(kUnturned, share);
   Layout unturned = ShapeSolver(part, share, context, result).run();
-  const std::uint64_t layouts = result.layouts_tried;
   part = problem;
   part.search_unturned = false;
   share = options;
   share_effort(1 - kUnturned, share);
-  result.layouts_tried = 0;
   Layout turned = ShapeSolver(part, share, context, result).run();
-  result.layouts_tried += layouts;
-  const auto cost = [&](const Layout& layout) {
-    return std::tuple(layout.unplaced, layout.pages, page_texels(problem, layout, options));
-  };
-  return cost(unturned) < cost(turned) ? std::move(unturned) : std::move(turned);
+  const bool unturned_wins =
+      shape_cost(problem, unturned, options) < shape_cost(problem, turned, options);
+  return unturned_wins ? std::move(unturned) : std::move(turned);
+}
+
+}  // namespace
+
+Layout solve_shape(const Problem& problem, const PackOptions& options, const Context& context,
+                   PackResult& result) {
+  Layout best = solve_turns(problem, options, context, result);
+  if (!worth_fast(problem, options) || context.cancelled()) return best;
+  PackOptions fast = options;
+  fast.preset = PackPreset::fast;
+  PackResult log;
+  Layout quick = solve_turns(problem, fast, context, log);
+  result.layouts_tried += log.layouts_tried;
+  const bool quick_wins = shape_cost(problem, quick, options) < shape_cost(problem, best, options);
+  return quick_wins ? std::move(quick) : std::move(best);
 }
 
 }  // namespace atlas::pack

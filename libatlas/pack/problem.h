@@ -14,6 +14,9 @@ namespace atlas::pack {
 // All items have sides >= 1, and every item fits an empty page in some allowed direction.
 struct Problem {
   std::span<const Extent> items;
+  // The same items in texels, without padding. Only the sizes of cropped pages depend on them: with
+  // an alignment, an item may end before its last cell does.
+  std::span<const Extent> texels;
   Extent page;
   bool allow_rotation = false;
   // Whether strips of items that may be turned are also searched without turning any. A caller that

@@ -194,7 +194,7 @@ void join_last_pages(const Problem& problem, const SearchLimits& limits, const C
   enough.enough_height = problem.page.height;
   PackResult unused;
   const Layout layout = search_strip(strip, enough, context, unused);
-  if (layout.last_used > problem.page.height) return;
+  if (layout.unplaced > 0 || layout.last_used > problem.page.height) return;
   FilledPage joined;
   joined.area = one.area + other.area;
   for (std::uint32_t k = 0; k < ids.size(); ++k) {
@@ -205,26 +205,55 @@ void join_last_pages(const Problem& problem, const SearchLimits& limits, const C
   pages.back() = std::move(joined);
 }
 
+// Puts items of the pages beyond `allowed` onto those before, wherever there is room. The largest
+// come first. They are not removed from their own pages, which are about to be dropped.
+void fill_in(const Problem& problem, std::uint32_t allowed, std::vector<FilledPage>& pages) {
+  std::vector<std::uint32_t> left;
+  for (std::size_t p = allowed; p < pages.size(); ++p)
+    for (const GapPlacement& g : pages[p].items) left.push_back(g.item);
+  std::sort(left.begin(), left.end(), [&](std::uint32_t a, std::uint32_t b) {
+    return std::pair(-problem.items[a].area(), a) < std::pair(-problem.items[b].area(), b);
+  });
+  for (std::uint32_t p = 0; p < allowed; ++p) {
+    FreeRects free(problem.page);
+    for (const GapPlacement& g : pages[p].items) {
+      Extent e = problem.items[g.item];
+      if (g.rotated) std::swap(e.width, e.height);
+      free.place({g.x, g.y, e.width, e.height});
+    }
+    std::erase_if(left, [&](std::uint32_t item) {
+      Spot spot;
+      if (!free.find(problem.items[item], problem.allow_rotation, PlaceRule::bottom_left, spot))
+        return false;
+      free.place(spot.rect);
+      pages[p].items.push_back({item, spot.rect.x, spot.rect.y, spot.rotated});
+      pages[p].area += spot.rect.area();
+      return true;
+    });
+  }
+}
+
 // Sorts the fullest pages first. If fewer pages are allowed than needed, the emptiest are dropped,
-// and their items are unplaced.
+// and those of their items that find no room on the others are unplaced.
 Layout to_layout(const Problem& problem, std::vector<FilledPage> pages) {
   std::stable_sort(pages.begin(), pages.end(),
                    [](const FilledPage& a, const FilledPage& b) { return a.area > b.area; });
   Layout layout;
   layout.placements.resize(problem.items.size());
+  layout.unplaced = static_cast<std::uint32_t>(problem.items.size());
+  if (pages.size() > problem.max_pages) {
+    fill_in(problem, problem.max_pages, pages);
+    pages.resize(problem.max_pages);
+  }
   layout.pages = static_cast<std::uint32_t>(pages.size());
   std::int32_t used = 0;
   for (std::uint32_t p = 0; p < pages.size(); ++p)
     for (const GapPlacement& g : pages[p].items) {
-      if (p >= problem.max_pages) {
-        ++layout.unplaced;
-        continue;
-      }
       layout.placements[g.item] = {p, g.x, g.y, g.rotated};
+      --layout.unplaced;
       const Extent e = problem.items[g.item];
       used = std::max(used, g.y + (g.rotated ? e.width : e.height));
     }
-  layout.pages = std::min(layout.pages, problem.max_pages);
   if (layout.pages > 0) layout.last_used = layout.pages == 1 ? used : pages[layout.pages - 1].area;
   return layout;
 }
@@ -241,11 +270,12 @@ Layout search_pages(const Problem& problem, const SearchLimits& limits, const Co
       start = std::move(pages);
     if (start.size() <= limits.enough_pages) break;
   }
-  // The bound takes longer than a layout, so it is only computed if the area does not decide.
-  double area = 0;
-  for (const Extent& e : problem.items) area += static_cast<double>(e.area());
+  // The bound takes longer than a layout, so it is only computed if the area does not decide. The
+  // sum is exact, because callers pass no more than 2^62 cells.
+  std::int64_t area = 0;
+  for (const Extent& e : problem.items) area += e.area();
   const auto by_area =
-      static_cast<std::uint32_t>(std::ceil(area / static_cast<double>(problem.page.area())));
+      static_cast<std::uint32_t>((area + problem.page.area() - 1) / problem.page.area());
   result.page_lower_bound = start.size() > by_area ? page_bound(problem) : by_area;
   const std::uint32_t enough = std::max(result.page_lower_bound, limits.enough_pages);
   if (limits.other_starts && start.size() > enough) start_with_fewer(problem, start, result);

@@ -217,6 +217,14 @@ Layout StripSearch::run() {
   else
     offer(anneal(problem_, start, limits_));
   if (limits_.beam_states > 0) search_beams();
+  // A single pass takes little time, and now and then it is lower than all that was searched. It
+  // also places what it can where the largest height has no room for all items, which ends the
+  // search without a layout.
+  if (!done() && (limits_.layouts != 1 || placed_.empty())) {
+    Layout widest = pack_widest_first(problem_);
+    ++result_.layouts_tried;
+    if (widest.unplaced == 0 ? widest.last_used < height_ : placed_.empty()) return widest;
+  }
   Layout layout;
   layout.placements.resize(problem_.items.size());
   layout.pages = 1;

@@ -15,10 +15,14 @@ constexpr std::uint64_t kPageWork = 160'000, kStripWork = 25'000'000, kBeamWork 
 // take quadratic time in the items of a page.
 constexpr std::size_t kSmall = 1000;
 
+// The shares of the time of `best`. Times are products, never differences, because the budget may
+// be infinite.
+constexpr double kAnnealed = 0.3, kUnturned = 0.1, kJoined = 0.1;
+
 // Takes a tenth of the effort and time of `best` from the beams for layouts without turns.
 void share_with_unturned(const PackOptions& options, SearchLimits& limits) {
-  limits.unturned_seconds = 0.1 * options.time_budget;
-  limits.beam_seconds -= limits.unturned_seconds;
+  limits.unturned_seconds = kUnturned * options.time_budget;
+  limits.beam_seconds = (1 - kAnnealed - kUnturned) * options.time_budget;
   limits.unturned_layouts = options.effort > 0 ? (options.effort + 9) / 10 : UINT64_MAX;
   if (options.effort > 0)
     limits.beam_states -= std::min(limits.beam_states, limits.unturned_layouts);
@@ -27,45 +31,10 @@ void share_with_unturned(const PackOptions& options, SearchLimits& limits) {
 // Takes a tenth of the effort and time of `best` for joining two pages.
 void share_with_join(const PackOptions& options, SearchLimits& limits) {
   limits.other_starts = true;
-  limits.join_seconds = 0.1 * options.time_budget;
-  limits.seconds -= limits.join_seconds;
+  limits.join_seconds = kJoined * options.time_budget;
+  limits.seconds = (1 - kJoined) * options.time_budget;
   limits.join_layouts = options.effort > 0 ? options.effort / 10 : UINT64_MAX;
   if (options.effort > 0) limits.layouts -= limits.join_layouts;
-}
-
-SearchLimits limits_for(const Problem& problem, const PackOptions& options, bool strip) {
-  SearchLimits limits;
-  limits.seed = options.seed;
-  // If items may not be turned, beam searches seldom find a better layout than annealing.
-  const bool beams = strip && problem.allow_rotation;
-  if (options.preset == PackPreset::best) {
-    limits.layouts = options.effort;
-    limits.seconds = options.time_budget;
-    limits.chains = 4;
-    if (!strip) share_with_join(options, limits);
-    if (beams) {
-      limits.seconds = 0.3 * options.time_budget;
-      limits.beam_seconds = options.time_budget - limits.seconds;
-      limits.layouts = (options.effort + 2) / 3;
-      limits.beam_states = options.effort > 0 ? options.effort - limits.layouts : UINT64_MAX;
-      if (problem.search_unturned) share_with_unturned(options, limits);
-    }
-    return limits;
-  }
-  limits.other_starts = !strip;
-  limits.join_layouts = strip ? 0 : UINT64_MAX;
-  limits.join_seconds = std::numeric_limits<double>::infinity();
-  const std::uint64_t n = problem.items.size();
-  limits.seconds = std::numeric_limits<double>::infinity();
-  limits.layouts = strip ? 1 + kStripWork / (n * n / 2 + 1000) : standard_page_limits(n).layouts;
-  if (beams) {
-    if (problem.search_unturned) limits.unturned_layouts = limits.layouts;
-    limits.unturned_seconds = limits.seconds;
-    limits.layouts = 1 + limits.layouts / 3;
-    limits.beam_seconds = limits.seconds;
-    limits.beam_states = kBeamWork / (2 * n * n + 1000);
-  }
-  return limits;
 }
 
 Layout better(Layout a, Layout b) {
@@ -156,6 +125,41 @@ SearchLimits standard_page_limits(std::size_t items) {
   return limits;
 }
 
+SearchLimits limits_for(const Problem& problem, const PackOptions& options, bool strip) {
+  SearchLimits limits;
+  limits.seed = options.seed;
+  // If items may not be turned, beam searches seldom find a better layout than annealing.
+  const bool beams = strip && problem.allow_rotation;
+  if (options.preset == PackPreset::best) {
+    limits.layouts = options.effort;
+    limits.seconds = options.time_budget;
+    limits.chains = 4;
+    if (!strip) share_with_join(options, limits);
+    if (beams) {
+      limits.seconds = kAnnealed * options.time_budget;
+      limits.beam_seconds = (1 - kAnnealed) * options.time_budget;
+      limits.layouts = (options.effort + 2) / 3;
+      limits.beam_states = options.effort > 0 ? options.effort - limits.layouts : UINT64_MAX;
+      if (problem.search_unturned) share_with_unturned(options, limits);
+    }
+    return limits;
+  }
+  limits.other_starts = !strip;
+  limits.join_layouts = strip ? 0 : UINT64_MAX;
+  limits.join_seconds = std::numeric_limits<double>::infinity();
+  const std::uint64_t n = problem.items.size();
+  limits.seconds = std::numeric_limits<double>::infinity();
+  limits.layouts = strip ? 1 + kStripWork / (n * n / 2 + 1000) : standard_page_limits(n).layouts;
+  if (beams) {
+    if (problem.search_unturned) limits.unturned_layouts = limits.layouts;
+    limits.unturned_seconds = limits.seconds;
+    limits.layouts = 1 + limits.layouts / 3;
+    limits.beam_seconds = limits.seconds;
+    limits.beam_states = kBeamWork / (2 * n * n + 1000);
+  }
+  return limits;
+}
+
 SearchLimits limits_to_join(const Problem& strip, const SearchLimits& pages) {
   PackOptions options;
   options.seed = pages.seed;
@@ -175,7 +179,7 @@ Layout solve(const Problem& problem, const PackOptions& options, const Context& 
   const SearchLimits limits = limits_for(problem, options, strip);
   if (options.engine != PackEngine::automatic) {
     const std::vector<std::uint32_t> order = sorted_items(problem.items, Order::height);
-    result.layouts_tried = 1;
+    ++result.layouts_tried;
     result.page_lower_bound = strip ? 1 : page_bound(problem);
     if (options.engine == PackEngine::max_rects)
       return pack_first_fit(problem, order, PlaceRule::bottom_left);
@@ -190,14 +194,18 @@ Layout solve(const Problem& problem, const PackOptions& options, const Context& 
   }
   if (options.preset == PackPreset::fast) {
     result.page_lower_bound = 1;
-    result.layouts_tried = 1;
+    ++result.layouts_tried;
     return pack_widest_first(problem);
   }
-  if (problem.items.size() <= kSmall)
-    return strip ? search_strip(problem, limits, context, result)
-                 : search_pages(problem, limits, context, result);
+  if (problem.items.size() <= kSmall) {
+    if (strip) return search_strip(problem, limits, context, result);
+    Layout searched = search_pages(problem, limits, context, result);
+    if (searched.unplaced == 0) return searched;
+    // The search looks for few pages. If too few are allowed, a single pass may place more items.
+    return better(std::move(searched), pack_widest_first(problem));
+  }
   result.page_lower_bound = strip ? 1 : page_bound(problem);
-  if (strip || options.preset != PackPreset::best) result.layouts_tried = strip ? 2 : 1;
+  if (strip || options.preset != PackPreset::best) result.layouts_tried += strip ? 2 : 1;
   if (strip) return pack_large_strip(problem);
   if (options.preset != PackPreset::best)
     return pack_large_pages(problem, options, result.page_lower_bound);

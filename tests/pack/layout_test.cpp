@@ -43,6 +43,18 @@ TEST(AtlasLayout, SaysWhyAnItemDoesNotFit) {
   EXPECT_EQ(AtlasLayout::create(o).status().code(), ErrorCode::bad_option);
 }
 
+TEST(AtlasLayout, PinnedRectanglesWithoutAreaTakeNoSpace) {
+  const std::vector<PinnedRect> pins{{0, {5, 2, 0, 4}}, {0, {2, 5, 4, 0}}};
+  PackOptions o;
+  o.page = {10, 10};
+  o.max_pages = 1;
+  o.pinned = pins;
+  Result<AtlasLayout> layout = AtlasLayout::create(o);
+  ASSERT_TRUE(layout.ok());
+  EXPECT_TRUE(layout->insert({10, 10}).ok());
+  EXPECT_TRUE(layout->repack({}).ok());
+}
+
 TEST(AtlasLayout, RandomOperationsKeepTheRules) {
   for (std::uint64_t seed = 0; seed < 20000; ++seed)
     ASSERT_EQ(test::fuzz_layout(seed), "") << "seed " << seed;

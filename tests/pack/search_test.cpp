@@ -4,12 +4,14 @@
 #include <algorithm>
 #include <tuple>
 
+#include "libatlas/core/clock.h"
 #include "libatlas/pack/engines.h"
 #include "libatlas/pack/gap_fill.h"
 #include "libatlas/pack/height_index.h"
 #include "libatlas/pack/skyline.h"
 #include "libatlas/pack/strip_beam.h"
 #include "tests/pack/checks.h"
+#include "tests/support/slowness.h"
 
 namespace atlas {
 namespace {
@@ -260,6 +262,20 @@ TEST(Budget, LargeSetsEndNearIt) {
   ASSERT_TRUE(result.ok());
   EXPECT_EQ(result->layouts_tried, 1u);
   EXPECT_EQ(test::check_layout(items, result->placements, result->pages, o), "");
+}
+
+// Each item meets free rectangles by the thousand, of which each leaves a piece beside it.
+TEST(FreeRects, ThousandsOfThinItemsTakeLittleTime) {
+  test::Noise noise{9};
+  std::vector<Extent> items(5000);
+  for (Extent& e : items) e = {noise.in(1, 8192), 1};
+  PackOptions o;
+  o.page = {8192, 8192};
+  const double begun = cpu_seconds();
+  const Result<PackResult> result = pack_rects(items, o, {});
+  ASSERT_TRUE(result.ok());
+  EXPECT_LT(cpu_seconds() - begun, test::kSlowness * 0.5);
+  EXPECT_EQ(result->pages.size(), 1u);
 }
 
 // Compares the index with a look at every page.

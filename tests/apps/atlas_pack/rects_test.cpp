@@ -31,6 +31,13 @@ TEST_F(AtlasPack, RectsFromCsvToCsv) {
   EXPECT_NE(read("p.svg").find("<svg"), std::string::npos);
 }
 
+TEST_F(AtlasPack, CommasInQuotesSeparateNothing) {
+  write("a.csv", "name;width;height\n\"b, c\";3;4\nd;5;6\n");
+  const RunResult r = run("rects a.csv -o a.out.csv --page 8x10");
+  EXPECT_EQ(r.exit_code, 0) << r.output;
+  EXPECT_NE(read("a.out.csv").find("\"b, c\",0,"), std::string::npos);
+}
+
 TEST_F(AtlasPack, CommentsFollowLinesAndNamesHoldNumberSigns) {
   write("a.csv",
         "name,width,height\n  # all, of them\na#1,3,4\ntile #2, 5, 6  # the second, at last\n");
