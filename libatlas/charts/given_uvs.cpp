@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "libatlas/charts/cut_pieces.h"
+#include "libatlas/charts/flattening/touching.h"
 #include "libatlas/charts/flattening/uv_folds.h"
 #include "libatlas/charts/geometry/cone.h"
 #include "libatlas/charts/mesh/local_chart.h"
@@ -47,7 +48,7 @@ class GivenChart {
     const double surface = surface_area(), uv_area = unmirror();
     if (!(uv_area > 0) || !(surface > 0)) return Verdict::useless;
     const LocalMesh mesh = chart_.mesh();
-    if (!check_injectivity(mesh, uvs_).injective) return Verdict::bad;
+    if (!part_touching(mesh, std::sqrt(uv_area), uvs_)) return Verdict::bad;
     const NormalCone cone = normal_cone(input_.topology.normals, triangles);
     const double limit = radians(input_.options.cone_degrees);
     if (limit > 0 && triangles.size() > 1 && cone.angle > limit * (1 + 1e-9)) return Verdict::bad;

@@ -50,8 +50,8 @@ TEST(Advice, KeptChartsThatLeaveThePageEmptyAreNamed) {
   EXPECT_TRUE(advice_on(report, options).empty());  // its uvs were not given
   options.charts.keep_uv_charts = true;
   EXPECT_TRUE(holds(advice_on(report, options), "charts fill only 0.6 % of the pages"));
-  EXPECT_TRUE(holds(advice_on(report, options), "charts[2] of the report with 128 triangles"));
-  EXPECT_TRUE(holds(advice_on(report, options), "is 31.6 x 0.0316 units"));
+  EXPECT_TRUE(holds(advice_on(report, options), "charts[2] of the report, of 128 triangles"));
+  EXPECT_TRUE(holds(advice_on(report, options), "is 31.6 long and 0.0316 wide for 1 square"));
   report.uv_utilization = 0.2;
   EXPECT_TRUE(advice_on(report, options).empty());
   report.uv_utilization = 0.006;
