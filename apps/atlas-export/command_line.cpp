@@ -69,7 +69,8 @@ void add_chart_options(CLI::App& app, ExportCommand& command) {
   CLI::Option* keep = app.add_flag(
       "--keep-uv-charts", options.charts.keep_uv_charts,
       "Keep the charts of the scene's own texture coordinates and their shapes, whatever "
-      "they stretch; flatten anew only those that are flipped, overlapping or missing");
+      "they stretch; flatten anew only those that are flipped, overlapping, squeezed to a line "
+      "or missing");
   app.add_option("--uv-aspect", command.uv_aspect,
                  "With --keep-uv-charts: width / height of the page that they were made for; "
                  "without it, what the file says if libatlas wrote it, else 1")

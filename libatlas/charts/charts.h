@@ -41,8 +41,8 @@ struct ChartOptions {
   double crease_degrees = 40;
   bool split_at_materials = true;  // a chart holds triangles of one material only
   // Keep the charts of the given texcoords and their shapes (scaled, turned, unmirrored), whatever
-  // they stretch; only what is flipped, overlapping, degenerate, missing or beyond cone_degrees is
-  // flattened anew.
+  // they stretch; only what is flipped, overlapping, degenerate, squeezed to a line, missing or
+  // beyond cone_degrees is flattened anew.
   bool keep_uv_charts = false;
   // Width / height of the page that the given texcoords run over from 0 to 1; 1e-6..1e6.
   double uv_aspect = 1;

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "libatlas/charts/cut_pieces.h"
+#include "libatlas/charts/flattening/touching.h"
 #include "libatlas/charts/flattening/uv_folds.h"
 #include "libatlas/charts/geometry/cone.h"
 #include "libatlas/charts/mesh/local_chart.h"
@@ -21,6 +22,12 @@ namespace {
 // Triangles of a smaller altitude, relative to the square root of the chart's area, may be flipped
 // by the rounding of what is written.
 constexpr double kMinAltitude = 1e-7;
+
+// A chart whose uvs, with its surface's area, are longer than this multiple of its border is
+// flattened anew: squares squeezed by more than 4096, as by projections seen edge-on, and charts
+// with a texcoord far from all others. A single one would leave its page empty, and so little to
+// the other charts that rounding bends them.
+constexpr double kMaxLength = 16;
 
 using Border = std::vector<std::array<std::uint32_t, 2>>;
 
@@ -41,11 +48,13 @@ class GivenChart {
     const double surface = surface_area(), uv_area = unmirror();
     if (!(uv_area > 0) || !(surface > 0)) return Verdict::useless;
     const LocalMesh mesh = chart_.mesh();
-    if (!check_injectivity(mesh, uvs_).injective) return Verdict::bad;
+    if (!part_touching(mesh, std::sqrt(uv_area), uvs_)) return Verdict::bad;
     const NormalCone cone = normal_cone(input_.topology.normals, triangles);
     const double limit = radians(input_.options.cone_degrees);
     if (limit > 0 && triangles.size() > 1 && cone.angle > limit * (1 + 1e-9)) return Verdict::bad;
     place(std::sqrt(surface / uv_area), flat);
+    if (flat.size.x > kMaxLength * std::max(border_length_, std::sqrt(surface)))
+      return Verdict::bad;
     const InjectivityOptions safe{.clearance = kMinAltitude * std::sqrt(surface)};
     const Injectivity check = check_injectivity(mesh, uvs_, safe);
     const auto has_area = [&](std::uint32_t i) { return !input_.topology.thin(triangles[i]); };
@@ -123,13 +132,19 @@ class GivenChart {
     return 0.5 * absolute;
   }
 
+  // Scales the uvs, turns them for packing, and measures the border.
   void place(double scale, FlatChart& flat) {
     for (Vec2d& uv : uvs_) uv = {uv.x * scale, uv.y * scale};
     border_.clear();
+    border_length_ = 0;
     for (std::uint32_t h = 0; h < chart_.opposite.size(); ++h) {
       if (chart_.opposite[h] != kNoIndex) continue;
       const std::uint32_t next = next_half_edge(h);
-      border_.push_back({chart_.corners[h / 3][h % 3], chart_.corners[next / 3][next % 3]});
+      const std::uint32_t a = chart_.corners[h / 3][h % 3], b = chart_.corners[next / 3][next % 3];
+      border_.push_back({a, b});
+      const double density = chart_.density.empty() ? 1 : chart_.density[h / 3];
+      border_length_ +=
+          density * glm::length(to_glm(chart_.positions[b]) - to_glm(chart_.positions[a]));
     }
     flat.size = orient_for_packing(uvs_, border_).size;
   }
@@ -140,6 +155,7 @@ class GivenChart {
   LocalChart chart_;
   std::vector<Vec2d> uvs_;
   Border border_;
+  double border_length_ = 0;  // on the surface, times density
 };
 
 using Verdict = GivenChart::Verdict;

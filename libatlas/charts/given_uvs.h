@@ -28,11 +28,11 @@ struct GivenUvsResult {
 // been cut at the uv seams of `mesh`, whose texcoord_indices must be those of usable_texcoords(). A
 // given chart is kept if its uvs (mirrored back exactly where they are mirrored as a whole) are
 // injective, both before and after they are scaled to the surface's area and turned for packing, if
-// no triangle is too thin to survive being written, and if the cone is within the limit. A chart
-// that is folded over is kept if all of its parts can be (see uv_folds.h). The others are flattened
-// within their outlines; those that do not flatten in one piece are segmented as well, and the way
-// that gives fewer charts is taken. Charts run in parallel; the result does not depend on the
-// number of threads.
+// no triangle is too thin to survive being written, if the cone is within the limit, and if its uvs
+// are not many times as long as its border. A chart that is folded over is kept if all of its parts
+// can be (see uv_folds.h). The others are flattened within their outlines; those that do not
+// flatten in one piece are segmented as well, and the way that gives fewer charts is taken. Charts
+// run in parallel; the result does not depend on the number of threads.
 GivenUvsResult flatten_given_uvs(const FlattenInput& input, const MeshView& mesh,
                                  const Context& context);
 

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstddef>
 #include <utility>
 
@@ -186,6 +187,28 @@ std::string on_crumbs(const ExportReport& report) {
       report.repairs.kept_charts, report.triangles);
 }
 
+// Returns a kept chart that is longer than all other charts, if it leaves the pages nearly empty;
+// else null. Charts of usual shapes fill half of their pages, and rings a fifth.
+const Chart* overlong_kept(const ExportReport& report) {
+  constexpr double kNearlyEmpty = 0.1;
+  if (report.charts.empty() || report.pages.empty() || report.uv_utilization >= kNearlyEmpty)
+    return nullptr;
+  const auto shorter = [](const Chart& a, const Chart& b) { return a.size.x < b.size.x; };
+  const Chart& longest = *std::max_element(report.charts.begin(), report.charts.end(), shorter);
+  return longest.kept ? &longest : nullptr;
+}
+
+std::string on_overlong(const ExportReport& report, const Chart& chart) {
+  return fmt::format(
+      "charts fill only {:.2g} % of the pages: charts[{}] of the report, of {} triangles, is "
+      "{:.3g} "
+      "long and {:.3g} wide for {:.3g} square units of surface, since "
+      "ChartOptions::keep_uv_charts kept its shape (unwrap it anew; give ChartOptions::uv_aspect "
+      "if its page was not square; or leave ChartOptions::keep_uv_charts out)",
+      100 * report.uv_utilization, &chart - report.charts.data(), chart.triangle_count,
+      chart.size.x, chart.size.y, chart.distortion.surface_area);
+}
+
 // Returns the display value of grey light.
 float shown(const ExportReport& report, double luminance) {
   const auto v = static_cast<float>(luminance);
@@ -230,9 +253,12 @@ std::vector<std::string> advice_on(const ExportReport& report, const ExportOptio
   if (options.charts.keep_uv_charts && report.repairs.kept_charts == 0)
     lines.push_back(fmt::format(
         "ChartOptions::keep_uv_charts kept no chart: the scene's texture coordinates are missing, "
-        "flipped{} lie on each other{} (leave it out for charts of all new borders)",
-        cone ? "," : " or", cone ? " or bend beyond ChartOptions::cone_degrees" : ""));
+        "flipped, lie on each other{}or are squeezed to lines (leave it out for charts of all new "
+        "borders)",
+        cone ? ", bend beyond ChartOptions::cone_degrees " : " "));
   if (options.charts.keep_uv_charts && keeps_crumbs(report)) lines.push_back(on_crumbs(report));
+  if (const Chart* chart = overlong_kept(report); chart && options.charts.keep_uv_charts)
+    lines.push_back(on_overlong(report, *chart));
   if (report.triangles > 0 && report.surface_area == 0)
     lines.push_back(
         "no triangle has an area, so uvs say nothing (check how the scene was exported, and the "

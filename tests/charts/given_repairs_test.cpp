@@ -1,8 +1,10 @@
 // ChartOptions::keep_uv_charts remakes only the bad ones among the given charts.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 
 #include "tests/charts/given_charts.h"
 
@@ -46,6 +48,78 @@ TEST(GivenUvs, AFlippedTriangleCostsItsChartOnly) {
       ASSERT_EQ(set.uvs[i], before.uvs[i]) << "not one bit";
     }
   }
+}
+
+// A single chart of a length without bounds would leave its page empty.
+TEST(GivenUvs, ChartsSqueezedToALineAreFlattenedAnew) {
+  for (const float squeeze : {1e-3f, 1e-4f, 1e-7f, 1e-12f}) {
+    Mesh mesh = halves(8, [&](Vec3f p, int half) {
+      return half == 0 ? Vec2f{squeeze * p.x, p.y} : apart(p, half);
+    });
+    for (Vec3f& p : mesh.positions) p = {1e4f * p.x, 1e4f * p.y, 1e4f * p.z};
+    const ChartSet set = keep(mesh);
+    ASSERT_EQ(set.charts.size(), 2u);
+    EXPECT_EQ(set.charts[0].kept, squeeze == 1e-3f) << squeeze;
+    EXPECT_TRUE(set.charts[1].kept);
+    EXPECT_EQ(set.repairs.kept_charts, squeeze == 1e-3f ? 2u : 1u);
+    EXPECT_EQ(set.repairs.reflattened_charts, squeeze == 1e-3f ? 0u : 1u);
+    EXPECT_NEAR(set.charts[0].size.x, squeeze == 1e-3f ? 316228 : 1e4, 1);
+  }
+}
+
+TEST(GivenUvs, ATexcoordFarFromItsChartCostsThatChartOnly) {
+  for (const float far : {1e4f, 1e9f, 1e30f}) {
+    Mesh mesh = halves(8, apart);
+    mesh.texcoords[0].x = -far;  // the corner of the left half
+    const ChartSet set = keep(mesh);
+    ASSERT_EQ(set.charts.size(), 2u);
+    EXPECT_FALSE(set.charts[0].kept) << far;
+    EXPECT_TRUE(set.charts[1].kept);
+    EXPECT_NEAR(set.charts[0].size.x, 1, 1e-5);
+  }
+}
+
+// A ring is closed in the texture only, with other vertices on one bank of its seam than on the
+// other. Rounding decides whether the banks lie on each other.
+TEST(GivenUvs, BordersThatTouchAreParted) {
+  for (const double overlap : {0.0, 1e-9, 1e-7, 1e-6, 1e-3}) {
+    Mesh mesh = mapped(grid(60, 7, 10, 1), [&](Vec3f p) {
+      const double angle = 0.5 + (2 * std::numbers::pi + overlap) * p.x / 10;
+      const double r = p.x == 0 ? 1 + std::pow(p.y, 1.3) : 1 + p.y;
+      return Vec2f{float(-r * std::cos(angle)), float(r * std::sin(angle))};
+    });
+    const ChartSet set = keep(mesh);
+    ASSERT_EQ(set.charts.size(), 1u);
+    EXPECT_EQ(set.charts[0].kept, overlap < 1e-3) << overlap;
+    if (overlap > 1e-4) continue;
+    // The area between radii 1 and 2 is 3 pi, that of the surface 10.
+    EXPECT_NEAR(set.charts[0].size.y, 4 * std::sqrt(10 / (3 * std::numbers::pi)), 1e-2);
+    EXPECT_EQ(keep(mesh, {}, 8).uvs, set.uvs);
+  }
+}
+
+// What is long on the surface, too, or was cut along a short border, is as long as it should be.
+TEST(GivenUvs, LongChartsOfLongSurfacesAreKept) {
+  const Mesh ribbon = mapped(grid(400, 1, 1e4, 1), [](Vec3f p) { return Vec2f{p.x, p.y}; });
+  EXPECT_EQ(keep(ribbon).repairs.kept_charts, 1u);
+  // Wound 100 times around, far beyond its box.
+  Mesh roll(grid(4000, 1, 4000, 1));
+  for (const Vec3f& p : roll.positions) roll.texcoords.push_back({p.x, p.y});
+  roll.texcoord_indices = roll.indices;
+  for (Vec3f& p : roll.positions) {
+    const float angle = 0.157f * p.x, r = 6 + 0.001f * p.x;
+    p = {r * std::cos(angle), r * std::sin(angle), p.y};
+  }
+  EXPECT_EQ(keep(roll).repairs.kept_charts, 1u);
+  // A bowl that is nearly closed: its border is a hundredth of its diameter.
+  Mesh bowl = mapped(grid(40, 40, 2, 2), [](Vec3f p) { return Vec2f{p.x, p.y}; });
+  for (Vec3f& p : bowl.positions) {
+    const float x = p.x - 1, y = p.y - 1, r = std::max(std::abs(x), std::abs(y));
+    const float polar = 3.13f * r, round = std::hypot(x, y);
+    const float side = round > 0 ? std::sin(polar) / round : 0;
+    p = {side * x, side * y, std::cos(polar)};
+  }
+  EXPECT_EQ(keep(bowl).repairs.kept_charts, 1u);
 }
 
 TEST(GivenUvs, AFoldWithABadHalfIsFlattenedWhole) {

@@ -36,6 +36,29 @@ TEST(Advice, KeptChartsOfSingleTrianglesAreNamed) {
   EXPECT_TRUE(advice_on(report, options).empty());
 }
 
+TEST(Advice, KeptChartsThatLeaveThePageEmptyAreNamed) {
+  ExportReport report;
+  report.surface_area = 3;
+  report.triangles = 300;
+  report.repairs.kept_charts = 3;
+  report.charts.resize(3);
+  report.charts[2] = {.triangle_count = 128, .size = {31.6, 0.0316}, .kept = true};
+  report.charts[2].distortion.surface_area = 1;
+  report.pages.resize(1);
+  report.uv_utilization = 0.006;
+  ExportOptions options;
+  EXPECT_TRUE(advice_on(report, options).empty());  // its uvs were not given
+  options.charts.keep_uv_charts = true;
+  EXPECT_TRUE(holds(advice_on(report, options), "charts fill only 0.6 % of the pages"));
+  EXPECT_TRUE(holds(advice_on(report, options), "charts[2] of the report, of 128 triangles"));
+  EXPECT_TRUE(holds(advice_on(report, options), "is 31.6 long and 0.0316 wide for 1 square"));
+  report.uv_utilization = 0.2;
+  EXPECT_TRUE(advice_on(report, options).empty());
+  report.uv_utilization = 0.006;
+  report.charts[2].kept = false;
+  EXPECT_TRUE(advice_on(report, options).empty());
+}
+
 TEST(Advice, ChartsThatRoundingStretchesAreNamed) {
   ExportReport report;
   report.charts.resize(45);
@@ -119,10 +142,12 @@ TEST(Advice, UvChartsOfWhichNoneIsKeptAreNamed) {
   EXPECT_TRUE(holds(advice_on(report, options), "ChartOptions::keep_uv_charts kept no chart"));
   report.repairs.reflattened_charts = 9;
   EXPECT_TRUE(holds(advice_on(report, options), "ChartOptions::keep_uv_charts kept no chart"));
-  EXPECT_TRUE(holds(advice_on(report, options), "missing, flipped or lie on each other (leave"));
+  EXPECT_TRUE(holds(advice_on(report, options),
+                    "missing, flipped, lie on each other or are squeezed to lines (leave"));
   options.charts.cone_degrees = 30;
   EXPECT_TRUE(holds(advice_on(report, options),
-                    "flipped, lie on each other or bend beyond ChartOptions::cone_degrees (leave"));
+                    "lie on each other, bend beyond ChartOptions::cone_degrees or are squeezed to "
+                    "lines (leave"));
   report.repairs.kept_charts = 1;
   EXPECT_TRUE(advice_on(report, options).empty());
 }
