@@ -70,7 +70,7 @@ TEST(GivenUvs, ChartsSqueezedToALineAreFlattenedAnew) {
 TEST(GivenUvs, ATexcoordFarFromItsChartCostsThatChartOnly) {
   for (const float far : {1e4f, 1e9f, 1e30f}) {
     Mesh mesh = halves(8, apart);
-    mesh.texcoords[0].x = -far;  // the corner of the left half
+    mesh.texcoords[0] = {-far, -far};  // the corner of the left half
     const ChartSet set = keep(mesh);
     ASSERT_EQ(set.charts.size(), 2u);
     EXPECT_FALSE(set.charts[0].kept) << far;
