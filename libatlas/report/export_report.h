@@ -98,7 +98,7 @@ struct ExportReport {
   std::optional<GapReport> gaps = {};
   std::optional<std::uint64_t> texels_drawn_twice = {};  // as in UnwrappedMesh; without baked light
   std::vector<PageReport> pages = {};
-  int mip_levels = 0;  // lookups at levels 0..mip_levels read only a chart's own texels
+  int mip_levels = 0;           // lookups at levels 0..mip_levels read only a chart's own texels
   std::uint64_t gpu_bytes = 0;  // memory of the pages as RGBA8 with mip chains
 
   // The coarser mesh

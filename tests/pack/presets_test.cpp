@@ -7,20 +7,14 @@
 
 #include "libatlas/pack/engines.h"
 #include "libatlas/pack/layout.h"
-#include "tests/pack/checks.h"
+#include "tests/pack/packed.h"
 
 namespace atlas {
 namespace {
 
 constexpr PackPreset kPresets[] = {PackPreset::fast, PackPreset::standard, PackPreset::best};
 
-PackResult packed(const std::vector<Extent>& items, const PackOptions& options) {
-  Result<PackResult> r = pack_rects(items, options, {});
-  EXPECT_TRUE(r.ok()) << r.status().message();
-  if (!r.ok()) return {};
-  EXPECT_EQ(test::check_layout(items, r->placements, r->pages, options), "");
-  return std::move(*r);
-}
+using test::packed;
 
 PackOptions with(PackPreset preset, PackOptions options) {
   options.preset = preset;

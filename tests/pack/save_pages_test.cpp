@@ -5,18 +5,12 @@
 #include <utility>
 #include <vector>
 
-#include "tests/pack/checks.h"
+#include "tests/pack/packed.h"
 
 namespace atlas {
 namespace {
 
-PackResult packed(const std::vector<Extent>& items, const PackOptions& options) {
-  Result<PackResult> r = pack_rects(items, options, {});
-  EXPECT_TRUE(r.ok()) << r.status().message();
-  if (!r.ok()) return {};
-  EXPECT_EQ(test::check_layout(items, r->placements, r->pages, options), "");
-  return std::move(*r);
-}
+using test::packed;
 
 // Cuts a page into items by guillotine cuts, always through the largest part.
 std::vector<Extent> cut_page(test::Noise& noise, std::int32_t side, std::size_t count) {
