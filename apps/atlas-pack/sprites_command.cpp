@@ -225,11 +225,12 @@ Status check_links(const PackCommand& c, const fs::path& page) {
                       page.string())};
 }
 
-// Returns the rule that tells what the sheet was made from. Its target is the first page, or with
-// `of_data` the data of that page. Folders are inputs, too, because they change when an image is
-// added or removed.
+// Returns the rule that tells what the sheet was made from; empty if none is asked for. Its target
+// is the first page, or with `of_data` the data of that page. Folders are inputs, too, because they
+// change when an image is added or removed.
 Result<std::string> rule_of(const PackCommand& c, const SpriteFolder& read, bool of_data,
                             std::size_t pages) {
+  if (c.depfile.empty()) return std::string();
   const std::string image = page_image(c, 0, pages);
   std::vector<fs::path> inputs = read.folders;
   inputs.insert(inputs.end(), read.images.begin(), read.images.end());
@@ -298,8 +299,7 @@ Result<PackedAtlas> run_images(const PackCommand& command, const Context& contex
   if (!folder.ok()) return folder.status();
   const bool of_data = lower_extension(command.output) != ".png";
   // A name that no rule can hold is refused before the work.
-  if (Result<std::string> rule = rule_of(c, *folder, of_data, 1); !c.depfile.empty() && !rule.ok())
-    return rule.status();
+  if (const auto rule = rule_of(c, *folder, of_data, 1); !rule.ok()) return rule.status();
   Result<std::vector<Sprite>> read = read_sprites(c, *folder, context);
   if (!read.ok()) return read.status();
   std::vector<Sprite>& sprites = *read;
@@ -343,11 +343,10 @@ Result<PackedAtlas> run_images(const PackCommand& command, const Context& contex
   if (Status s = check_sizes(atlas); !s.ok()) return s;
   AtomicFiles files;  // so that all appear together
   if (Status s = write_files(c, sprites, atlas, files); !s.ok()) return s;
-  if (!c.depfile.empty()) {
-    const Result<std::string> rule = rule_of(c, *folder, of_data, atlas.pages.size());
-    if (!rule.ok()) return rule.status();
+  const Result<std::string> rule = rule_of(c, *folder, of_data, atlas.pages.size());
+  if (!rule.ok()) return rule.status();
+  if (!rule->empty())
     if (Status s = files.write(c.depfile, *rule); !s.ok()) return s;
-  }
   if (Status s = files.commit(); !s.ok()) return s;
   name_old_pages(c, atlas.pages.size(), context);
   return atlas;

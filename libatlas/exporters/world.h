@@ -47,7 +47,7 @@ struct World {
   std::vector<Vec2f> uvs = {};        // finite, 0..1, origin bottom left
   std::vector<Page> pages = {};
   // The UDIM tile of each uv, counted from 0 (tile 1001); empty: all are in the first. A uv of tile
-  // n is written as (u + n mod 10, v + n / 10). Only OBJ has tiles.
+  // n > 0 is written as (u + n mod 10, v + n / 10), with ten decimals. Only OBJ has tiles.
   std::vector<std::uint32_t> uv_tiles = {};
   std::string title = {};
   std::vector<std::string> info = {};  // one line each, for WorldInfo and comments

@@ -201,8 +201,7 @@ const Chart* overlong_kept(const ExportReport& report) {
 std::string on_overlong(const ExportReport& report, const Chart& chart) {
   return fmt::format(
       "charts fill only {:.2g} % of the pages: charts[{}] of the report, of {} triangles, is "
-      "{:.3g} "
-      "long and {:.3g} wide for {:.3g} square units of surface, since "
+      "{:.3g} long and {:.3g} wide for {:.3g} square units of surface, since "
       "ChartOptions::keep_uv_charts kept its shape (unwrap it anew; give ChartOptions::uv_aspect "
       "if its page was not square; or leave ChartOptions::keep_uv_charts out)",
       100 * report.uv_utilization, &chart - report.charts.data(), chart.triangle_count,
