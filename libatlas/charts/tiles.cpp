@@ -16,6 +16,7 @@
 #include "libatlas/charts/totals.h"
 #include "libatlas/core/bounds.h"
 #include "libatlas/core/glm_bridge.h"
+#include "libatlas/core/hull.h"
 #include "libatlas/core/parallel.h"
 #include "libatlas/param/halfedges.h"
 
@@ -25,6 +26,9 @@ namespace {
 // How far a cut may stray to be short, relative to a piece's even share of the length: as far as
 // the piece stays within its limit, but between kLeastBand and kMostBand.
 constexpr double kLeastBand = 0.1, kMostBand = 0.25, kNoBand = 1e-9;
+// A piece this many times as long as its triangles is not cut: its parts would be hardly shorter.
+// At 1, the rounding of a quarter of a disc decides whether it is cut again.
+constexpr double kFewTriangles = 1.25;
 // Parts below this share of a piece's area stay with the other side of a cut.
 constexpr double kCrumb = 0.01;
 
@@ -38,6 +42,18 @@ Box box_of(std::span<const Vec2d> uvs) {
 
 double longer_side(const Box& box) {
   return std::max(box.size().x, box.size().y);
+}
+
+// Returns the mean length of a piece's triangles, weighted by their areas; 0 without area.
+double mean_length(const FlatChart& piece) {
+  double sum = 0, area = 0;
+  for (const auto& [a, b, c] : piece.corners) {
+    const double twice = std::abs(cross(piece.uvs[a], piece.uvs[b], piece.uvs[c]));
+    const glm::dvec2 p = to_glm(piece.uvs[a]), q = to_glm(piece.uvs[b]), r = to_glm(piece.uvs[c]);
+    sum += twice * std::max({glm::distance(p, q), glm::distance(q, r), glm::distance(r, p)});
+    area += twice;
+  }
+  return area > 0 ? sum / area : 0;
 }
 
 bool names_uv_twice(const std::array<std::uint32_t, 3>& c) {
@@ -64,11 +80,12 @@ class Tiler {
  private:
   void cut(FlatChart piece) {
     const Box box = box_of(piece.uvs);
-    if (longer_side(box) <= limit_ && keeps_to_bound(piece)) {
+    const double limit = std::max(limit_, kFewTriangles * mean_length(piece));
+    if (longer_side(box) <= limit && keeps_to_bound(piece)) {
       pieces_.push_back(std::move(piece));
       return;
     }
-    const std::vector<std::vector<std::uint32_t>> parts = divide(piece, box);
+    const std::vector<std::vector<std::uint32_t>> parts = divide(piece, box, limit);
     // A single triangle, or no cut separates anything.
     if (parts.empty()) {
       keeps_to_bound(piece);
@@ -82,7 +99,8 @@ class Tiler {
     }
   }
 
-  std::vector<std::vector<std::uint32_t>> divide(const FlatChart& piece, const Box& box) const {
+  std::vector<std::vector<std::uint32_t>> divide(const FlatChart& piece, const Box& box,
+                                                 double limit) const {
     std::vector<std::uint32_t> all(piece.triangles.size());
     std::iota(all.begin(), all.end(), 0u);
     param::HalfEdges half_edges;
@@ -91,9 +109,9 @@ class Tiler {
     const glm::dvec2 size = box.size();
     const int axis = size.x >= size.y ? 0 : 1;
     cutter.face(axis == 0 ? 0 : std::numbers::pi / 2);
-    const double shares = std::max(2.0, std::ceil(size[axis] / limit_));
+    const double shares = std::max(2.0, std::ceil(size[axis] / limit));
     const double share = size[axis] / shares, line = box.low[axis] + share * std::ceil(shares / 2);
-    const double band = std::clamp(limit_ / share - 1, kLeastBand, kMostBand) * share;
+    const double band = std::clamp(limit / share - 1, kLeastBand, kMostBand) * share;
     const double crumb = kCrumb * size.x * size.y / shares;
     LineCut cut = cutter.cut(line, band, crumb);
     // Triangles as large as the piece are divided by their centroids.

@@ -17,7 +17,8 @@ struct TileLimits {
 };
 
 // Cuts every chart whose box is longer than its limit across its long side, repeatedly, until the
-// pieces fit or no cut divides them. A cut is the shortest path along edges near the even share; on
+// pieces fit, or are hardly longer than their own triangles (a disc as a fan gives quarters), or no
+// cut divides them. A cut is the shortest path along edges near the even share; on
 // regular meshes it is straight. Pieces keep their parent's uvs, shifted, and turned for packing
 // (those of given charts, Chart::kept, by 90 degrees at most), and therefore stay injective. What
 // stretched a small part of a chart by more than max_stretch may be a large part of a piece: such a

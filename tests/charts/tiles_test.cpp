@@ -137,6 +137,39 @@ TEST(Tiles, AreCutAcross) {
   EXPECT_EQ(check_charts(mesh.view(), set).fault, "");
 }
 
+// The parts of what is as long as its triangles would be just as long. A disc was cut into single
+// triangles, and a square wall into its halves.
+TEST(Tiles, AreNotMuchShorterThanTheirTriangles) {
+  for (const int n : {24, 200, 1000}) {
+    const Mesh mesh(fan(n));
+    ChartSet set = charts_of(mesh);
+    ASSERT_EQ(set.charts.size(), 1u);
+    EXPECT_EQ(cut(mesh, 0.1 * longest(set), set), 1u);
+    EXPECT_GE(set.charts.size(), 4u) << n;
+    EXPECT_LE(set.charts.size(), 6u) << n;
+    EXPECT_EQ(check_charts(mesh.view(), set).fault, "");
+  }
+  const Mesh wall(grid(1, 1));
+  ChartSet set = charts_of(wall);
+  EXPECT_EQ(cut(wall, 0.1, set), 0u);
+  EXPECT_EQ(set.charts.size(), 1u);
+}
+
+// A long needle does not keep the small triangles beside it together.
+TEST(Tiles, OfSmallTrianglesFitBesideANeedle) {
+  Mesh mesh(grid(60, 6, 10, 1));
+  const std::uint32_t tip = std::uint32_t(mesh.positions.size());
+  mesh.positions.push_back({10, -0.1f, 0});
+  for (const std::uint32_t v : {1u, 0u, tip}) mesh.indices.push_back(v);
+  ChartSet set = charts_of(mesh);
+  ASSERT_EQ(set.charts.size(), 1u);
+  EXPECT_EQ(cut(mesh, 2, set), 1u);
+  std::size_t within = 0;
+  for (const Chart& chart : set.charts)
+    if (chart.size.x <= 2) within += chart.triangle_count;
+  EXPECT_GE(within, 700u);  // of 721
+}
+
 // Returns the area of the smallest box around a chart, of 900 directions.
 double smallest_box(const ChartSet& set, const Chart& chart) {
   double smallest = std::numeric_limits<double>::infinity();
