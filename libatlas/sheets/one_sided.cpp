@@ -4,7 +4,9 @@
 #include <array>
 #include <cmath>
 #include <glm/trigonometric.hpp>
+#include <glm/vector_relational.hpp>
 #include <numeric>
+#include <optional>
 #include <utility>
 
 #include "libatlas/charts/chart_triangles.h"
@@ -50,6 +52,13 @@ struct Corners {
 
   glm::dvec3 normal() const { return glm::cross(b - a, c - a); }  // of twice the area's length
   glm::dvec3 at(const Weights& w) const { return w[0] * a + w[1] * b + w[2] * c; }
+
+  // Returns whether a point is within `reach` of the triangle's box.
+  bool near(const glm::dvec3& p, double reach) const {
+    const glm::dvec3 low = glm::min(glm::min(a, b), c), high = glm::max(glm::max(a, b), c);
+    return glm::all(glm::greaterThanEqual(p, low - reach)) &&
+           glm::all(glm::lessThanEqual(p, high + reach));
+  }
 
   // Returns whether a point within `reach` of the triangle's plane is within `reach` of the
   // triangle.
@@ -196,14 +205,21 @@ class Layers {
     const glm::dvec3 normal = own.normal();
     const double length = glm::length(normal);
     if (!(length > 0)) return false;
+    // The triangle that covered the last point. It often covers the next one as well, which takes a
+    // tenth of the time of asking the tree.
+    std::optional<Corners> last;
     return std::all_of(samples_.begin(), samples_.end(), [&](const Weights& weights) {
       const glm::dvec3 p = own.at(weights);
+      if (last && last->near(p, reach_) && last->holds(p, reach_)) return true;
       return tree.any_near(from_glm(glm::vec3(p)), float(2 * reach_), [&](std::uint32_t other) {
         if (other == t || !by[other]) return false;
         const Corners there = corners(other);
         const glm::dvec3 back = there.normal();
-        return glm::dot(normal, back) < -kOpposite * length * glm::length(back) &&
-               there.holds(p, reach_);
+        const double along = glm::dot(normal, back);
+        if (!(along < 0) || !(along < -kOpposite * length * glm::length(back))) return false;
+        if (!there.holds(p, reach_)) return false;
+        last = there;
+        return true;
       });
     });
   }

@@ -53,6 +53,13 @@ struct Piece {
     }
     return std::abs(twice);
   }
+  // The largest gap between the two surfaces: they are linear, so it is at a corner.
+  double gap() const {
+    double squared = 0;
+    for (int i = 0; i < count; ++i)
+      squared = std::max(squared, glm::dot(points[i].gap, points[i].gap));
+    return std::sqrt(squared);
+  }
   // The area in space divided by the longest side, on a coarse triangle with the edges e1 and e2.
   double width(const glm::dvec3& e1, const glm::dvec3& e2) const {
     double longest = 0;
@@ -117,25 +124,22 @@ bool SlipMeasure::visit(std::uint32_t triangle, const Coarse& coarse, const Slip
   }
   for (int side = 0; side < 3; ++side)
     if (across[side]) piece.clip(side);
-  const double area = piece.area();
-  if (piece.count < 3 || area <= kTouch * kTouch) return true;
-  covered_ += area;
-  double gap = 0;  // squared
-  for (int i = 0; i < piece.count; ++i) {
-    gap = std::max(gap, glm::dot(piece.points[i].gap, piece.points[i].gap));
-  }
-  found.slip = std::max(found.slip, std::sqrt(gap));
-  if (found.slip > limits.slip) return false;
-  const glm::dvec3 normal = glm::cross(p[1] - p[0], p[2] - p[0]);
-  const double length = glm::length(normal);
-  if (length > 0) {
-    const double c = glm::dot(normal, coarse.normal) / length;
-    if (c < turn_cosine_ && piece.width(coarse.e1, coarse.e2) > kStrip * limits.slip) {
-      turn_cosine_ = c;
-      found.turn = std::acos(std::max(c, -1.0));
+  if (piece.count == 0) return true;
+  // A piece without area adds nothing, but the chart goes on behind it: triangles without area in
+  // uv close T-junctions, and rows of them must not hide what lies between them.
+  if (const double area = piece.area(); area > kTouch * kTouch) {
+    covered_ += area;
+    const glm::dvec3 normal = glm::cross(p[1] - p[0], p[2] - p[0]);
+    found.slip = std::max(found.slip, piece.gap());
+    if (found.slip > limits.slip) return false;
+    const double length = glm::length(normal), c = glm::dot(normal, coarse.normal);
+    if (length > 0 && c / length < turn_cosine_ &&
+        piece.width(coarse.e1, coarse.e2) > kStrip * limits.slip) {
+      turn_cosine_ = c / length;
+      found.turn = std::acos(std::max(turn_cosine_, -1.0));
     }
+    if (found.turn > limits.turn) return false;
   }
-  if (found.turn > limits.turn) return false;
   for (int k = 0; k < 3; ++k) {
     const std::uint32_t other = fine_.opposite[std::size_t{3} * triangle + k];
     if (other != kNoIndex) push(other / 3);
