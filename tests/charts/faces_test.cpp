@@ -7,7 +7,9 @@
 
 #include "libatlas/charts/cells/cells.h"
 #include "libatlas/charts/cells/faces.h"
+#include "libatlas/charts/charts.h"
 #include "tests/charts/coarse_shapes.h"
+#include "tests/charts/toothed_wheel.h"
 
 namespace atlas::test {
 namespace {
@@ -76,6 +78,29 @@ TEST(Faces, BoundCells) {
       faces_of[cells.of_triangle[t]].insert(part.faces.of_triangle[t]);
     }
     for (const auto& faces : faces_of) EXPECT_EQ(faces.size(), 1u) << shape.name;
+  }
+}
+
+TEST(Faces, OfPiecesLeftOutAreNone) {
+  const Part part = part_of(together(box(9), geodesic_sphere(12)));
+  const std::vector<std::uint8_t> left_out{1, 0};
+  const Regions faces = find_faces(part.topology, part.plan, left_out);
+  EXPECT_EQ(count(faces), 0u);
+  EXPECT_EQ(faces.share, (std::vector<double>{0, 0}));
+}
+
+// Cells of such wheels hold several teeth unless faces bound them: with more than 20 000 triangles
+// they came out in more than a thousand charts.
+TEST(Faces, BoundCellsOfLargePartsWithManyTeeth) {
+  const Shape wheel = toothed_wheel(1600, 0.1);
+  ASSERT_GT(wheel.triangle_count(), 20000u);
+  for (const ChartPreset preset : {ChartPreset::standard, ChartPreset::fast}) {
+    ChartOptions options;
+    options.preset = preset;
+    const Mesh mesh(wheel);
+    const Result<ChartSet> set = make_charts(mesh.view(), options, {});
+    ASSERT_TRUE(set.ok());
+    EXPECT_LT(set->charts.size(), 60u);
   }
 }
 

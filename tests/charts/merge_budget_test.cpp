@@ -3,54 +3,27 @@
 
 #include <gtest/gtest.h>
 
-#include <cmath>
-#include <numbers>
+#include <algorithm>
+#include <numeric>
 
 #include "libatlas/charts/charts.h"
 #include "libatlas/charts/merging/merge.h"
+#include "libatlas/charts/merging/trial_mesh.h"
 #include "tests/charts/coarse_shapes.h"
+#include "tests/charts/toothed_wheel.h"
 #include "tests/support/shapes.h"
 
 namespace atlas::test {
 namespace {
-
-Vec3f at(double radius, double turn, double height) {
-  const double angle = 2 * std::numbers::pi * turn;
-  return {static_cast<float>(radius * std::cos(angle)),
-          static_cast<float>(radius * std::sin(angle)), static_cast<float>(height)};
-}
-
-// A wheel with shallow rectangular teeth, capped by fans around its two hubs.
-Shape toothed_wheel(std::uint32_t teeth) {
-  Shape shape;
-  const std::uint32_t n = 4 * teeth;
-  for (const double height : {0.0, 0.1}) {
-    for (std::uint32_t i = 0; i < teeth; ++i) {
-      shape.positions.push_back(at(1, i / double(teeth), height));
-      shape.positions.push_back(at(1, (i + 0.5) / teeth, height));
-      shape.positions.push_back(at(1.01, (i + 0.5) / teeth, height));
-      shape.positions.push_back(at(1.01, (i + 1.0) / teeth, height));
-    }
-  }
-  shape.positions.push_back({0, 0, 0});
-  shape.positions.push_back({0, 0, 0.1f});
-  for (std::uint32_t i = 0; i < n; ++i) {
-    const std::uint32_t j = (i + 1) % n;
-    for (const std::uint32_t v :
-         {i, j, n + j, i, n + j, n + i, 2 * n, j, i, 2 * n + 1, n + i, n + j})
-      shape.indices.push_back(v);
-  }
-  return shape;
-}
 
 // A flat cone of needles around its tip, with caps along its rim that are folded up and down, much
 // lower than wide.
 Shape fan_with_caps(std::uint32_t n) {
   Shape shape;
   shape.positions.push_back({0, 0, 0.2f});
-  for (std::uint32_t i = 0; i < n; ++i) shape.positions.push_back(at(1, i / double(n), 0));
+  for (std::uint32_t i = 0; i < n; ++i) shape.positions.push_back(around_axis(1, i / double(n), 0));
   for (std::uint32_t i = 0; i < n; ++i)
-    shape.positions.push_back(at(1 + 1e-9, (i + 0.5) / n, -1e-9));
+    shape.positions.push_back(around_axis(1 + 1e-9, (i + 0.5) / n, -1e-9));
   for (std::uint32_t i = 0; i < n; ++i) {
     const std::uint32_t p = 1 + i, q = 1 + (i + 1) % n;
     for (const std::uint32_t v : {0u, p, q, p, p + n, q, q, p + n, q + n})
@@ -97,6 +70,43 @@ TEST(MergeWork, OfAFanWithCapsIsBounded) {
   EXPECT_GT(merged.slots, 2000u);
   EXPECT_LT(merged.result.work, most_work(merged.slots));
   EXPECT_LT(chart_count(fan_with_caps(500)), 10u);
+}
+
+// Cells that are sectors of a disc. The entries of the factor's rows, from the first to the
+// diagonal, are counted.
+TEST(MergeWork, OfSectorsAroundAHubGrowsWithTheirNumber) {
+  constexpr std::uint32_t kSectors = 60, kNeedles = 10;
+  const Topology topology = topology_of(fan(kSectors * kNeedles));
+  Cells cells;
+  cells.count = kSectors;
+  for (std::uint32_t t = 0; t < topology.triangle_count(); ++t)
+    cells.of_triangle.push_back(t / kNeedles);
+  const CoarseMesh mesh = build_coarse(topology, 40, cells);
+  std::vector<std::uint8_t> joined(mesh.arcs.size(), 0);
+  std::vector<std::uint32_t> glue;
+  for (std::uint32_t arc = 0; arc < mesh.arcs.size(); ++arc) {
+    joined[arc] = mesh.arcs[arc].cell[1] != kNoIndex;
+    if (joined[arc]) glue.push_back(arc);
+  }
+  std::vector<std::uint32_t> sectors(mesh.cells.size());
+  std::iota(sectors.begin(), sectors.end(), 0u);
+  TrialScratch scratch(mesh);
+  TrialMesh trial(mesh, scratch);
+  trial.assemble({sectors, {}, glue}, joined);
+  std::vector<std::uint32_t> first(trial.vertex_count());
+  std::iota(first.begin(), first.end(), 0u);
+  const JoinedFans fans = trial.fans();
+  for (std::size_t c = 0; c < fans.cells.size(); ++c) {
+    const auto own = fans.triangles.subspan(fans.first[c], fans.first[c + 1] - fans.first[c]);
+    std::uint32_t low = kNoIndex;
+    for (const JoinedFans::Triangle& t : own) low = std::min(low, t.a);
+    for (const JoinedFans::Triangle& t : own) first[t.a] = std::min(first[t.a], low);
+  }
+  std::size_t entries = 0;
+  for (std::size_t v = fans.cells.size(); v < first.size(); ++v) entries += v - first[v];
+  const std::size_t rows = first.size() - fans.cells.size();
+  EXPECT_EQ(rows, kSectors + 1);
+  EXPECT_LT(entries, 5 * rows);
 }
 
 TEST(MergeWork, OfAnOrdinaryShapeIsSmall) {

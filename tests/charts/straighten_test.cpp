@@ -8,6 +8,7 @@
 
 #include "libatlas/charts/seams/min_cut.h"
 #include "tests/charts/ragged_charts.h"
+#include "tests/charts/toothed_wheel.h"
 
 namespace atlas::test {
 namespace {
@@ -104,6 +105,23 @@ TEST(Straighten, NarrowBandsShortenWhatTheyCan) {
     charts.straighten(rings);
     EXPECT_LT(charts.border_length(), (rings < 4 ? 0.95 : 0.8) * before) << int(rings);
     EXPECT_EQ(charts.topologies(), were) << int(rings);
+  }
+}
+
+// A border around some sectors would be shorter than the rim. The charts would not be flat any
+// more.
+TEST(Straighten, CapsAroundHubsStayWhole) {
+  constexpr std::uint32_t kTeeth = 250;
+  RaggedCharts charts(toothed_wheel(kTeeth, 0.1));
+  std::vector<std::uint32_t>& chart = charts.partition.chart;
+  for (std::uint32_t t = 0; t < chart.size(); ++t) {
+    const std::uint32_t quad = t / 4;
+    chart[t] = t % 4 < 2 ? 2 + quad / (2 * kTeeth) : t % 4 - 2;  // caps, then halves of the rim
+  }
+  const std::vector<std::uint32_t> were = chart;
+  for (const std::uint8_t rings : {1, 12}) {
+    charts.straighten(SeamBand{rings, 0.1F});
+    EXPECT_EQ(chart, were) << int(rings);
   }
 }
 

@@ -22,20 +22,19 @@ constexpr std::size_t kMostRegions = 3;
 constexpr double kSoftCosine = 0.82, kMostSoft = 0.5, kFacet = 0.25;
 constexpr std::uint32_t kAlone = kNoIndex - 1, kRest = kNoIndex - 2;  // not names of planes
 
-// The largest piece that is searched for faces. Larger pieces have cells fine enough to find the
-// creases: faces saved hardly a chart there, and a cabin of a million triangles took three times as
-// long.
-constexpr std::size_t kManyTriangles = 20000;
-
 class FaceFinder {
  public:
-  FaceFinder(const Topology& topology, const CellPlan& plan)
-      : topology_(topology), plan_(plan), plane_(topology.triangle_count(), kNoIndex) {}
+  FaceFinder(const Topology& topology, const CellPlan& plan, std::span<const std::uint8_t> left_out)
+      : topology_(topology),
+        plan_(plan),
+        left_out_(left_out),
+        plane_(topology.triangle_count(), kNoIndex) {}
 
   Regions run() {
     faces_.of_triangle.assign(topology_.triangle_count(), kNoIndex);
     for (std::uint32_t k = 0; k < plan_.pieces.count(); ++k) {
-      faces_.share.push_back(find_in(plan_.pieces.of(k), plan_.cells[k]));
+      const bool none = plan_.cells[k] == 0 || (!left_out_.empty() && left_out_[k]);
+      faces_.share.push_back(none ? 0 : find_in(plan_.pieces.of(k), plan_.cells[k]));
     }
     return std::move(faces_);
   }
@@ -49,7 +48,6 @@ class FaceFinder {
 
   // Returns the share of the piece's area that faces cover.
   double find_in(std::span<const std::uint32_t> piece, std::uint32_t cells) {
-    if (piece.size() > kManyTriangles || cells == 0) return 0;
     planes_.clear();
     triangles_.clear();
     double area = 0, covered = 0;
@@ -155,6 +153,7 @@ class FaceFinder {
 
   const Topology& topology_;
   const CellPlan& plan_;
+  std::span<const std::uint8_t> left_out_;
   Regions faces_;
   std::vector<std::uint32_t> plane_;  // one per triangle
   std::vector<Plane> planes_;         // of the piece
@@ -163,8 +162,9 @@ class FaceFinder {
 
 }  // namespace
 
-Regions find_faces(const Topology& topology, const CellPlan& plan) {
-  return FaceFinder(topology, plan).run();
+Regions find_faces(const Topology& topology, const CellPlan& plan,
+                   std::span<const std::uint8_t> left_out) {
+  return FaceFinder(topology, plan, left_out).run();
 }
 
 }  // namespace atlas

@@ -4,6 +4,13 @@
 #include <numeric>
 
 namespace atlas {
+namespace {
+
+// Where more than this many fans meet at one vertex, as around the hub of a wheel, that vertex gets
+// one of the last numbers. With an early one, all later rows of the factor would reach back to it.
+constexpr std::uint32_t kHubFans = 24;
+
+}  // namespace
 
 TrialScratch::TrialScratch(const CoarseMesh& mesh)
     : slot_class(mesh.slot_position.size()),
@@ -125,9 +132,35 @@ void TrialMesh::number_vertices() {
       if (open) border_.push_back({t->a, t->b});
     }
   }
+  if (cells_.size() > kHubFans) put_hubs_last();
   const auto count = static_cast<int>(first_.back());
   const int joined_sides = count - static_cast<int>(border_.size());
   euler_ = static_cast<int>(vertex_count()) + joined_sides / 2 - count;
+}
+
+void TrialMesh::put_hubs_last() {
+  const auto cells = static_cast<std::uint32_t>(cells_.size());
+  const std::span<JoinedFans::Triangle> all(triangles_.data(), first_.back());
+  number_.assign(class_.size(), 0);
+  for (const JoinedFans::Triangle& t : all) ++number_[t.a - cells];
+  const auto hubs = static_cast<std::uint32_t>(
+      std::count_if(number_.begin(), number_.end(), [](std::uint32_t n) { return n > kHubFans; }));
+  if (hubs == 0) return;
+  const std::vector<std::uint32_t> before = class_;
+  auto next = static_cast<std::uint32_t>(before.size()) - hubs, last = next;
+  next = 0;
+  for (std::size_t v = 0; v < before.size(); ++v) {
+    number_[v] = number_[v] > kHubFans ? last++ : next++;
+    class_[number_[v]] = before[v];
+  }
+  const auto renumber = [&](std::uint32_t& v) { v = cells + number_[v - cells]; };
+  for (JoinedFans::Triangle& t : all) {
+    renumber(t.a);
+    renumber(t.b);
+  }
+  for (std::array<std::uint32_t, 2>& side : border_) {
+    for (std::uint32_t& v : side) renumber(v);
+  }
 }
 
 // Fills queue_ with the cells, breadth-first from `start`.

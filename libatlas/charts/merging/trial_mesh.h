@@ -64,6 +64,7 @@ class TrialMesh {
   void list_cells(std::span<const std::uint32_t> first, std::span<const std::uint32_t> second);
   void list_triangles(const std::vector<std::uint8_t>& joined);
   void number_vertices();
+  void put_hubs_last();
   void sweep(std::uint32_t start);
 
   const CoarseMesh& mesh_;
@@ -79,6 +80,7 @@ class TrialMesh {
   std::vector<std::uint32_t> neighbour_, first_neighbour_;
   // Scratch of sweeps; met_, one per cell, is the last sweep that met it.
   std::vector<std::uint32_t> queue_, met_;
+  std::vector<std::uint32_t> number_;  // scratch, one per vertex that is not a centre
   std::uint32_t sweeps_ = 0;
   int euler_ = 1;
 };

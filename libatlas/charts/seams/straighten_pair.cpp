@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "libatlas/core/degrees.h"
@@ -13,6 +14,14 @@ namespace {
 
 constexpr double kSteps = 256;        // the length of a mean edge in the cut's integers
 constexpr double kLongest = 1 << 16;  // the most steps of an edge, so that sums fit 32 bits
+
+// Triangles at a hub, where more than kHubTriangles meet, stay in their chart. A band of one ring
+// would hold the whole fan, and a cut in it would give a sector to what lies across the rim, which
+// flattens with neither: a toothed wheel took 8 s for charts that have to be divided again. The
+// triangles of a hub are needles: their longest edge squared exceeds kNeedle times twice their
+// area.
+constexpr int kHubTriangles = 128;
+constexpr double kNeedle = 16;
 
 class PairStraightener {
  public:
@@ -60,11 +69,37 @@ class PairStraightener {
   // Returns the triangle's index in the band; kNoIndex: not in the band.
   std::uint32_t place(std::uint32_t t) const { return side(t) == 2 ? kNoIndex : places_[t]; }
 
-  // Adds t to the band, unless it lies at a seam of its chart with itself.
+  // Adds t to the band, unless it lies at a seam of its chart with itself, or at a hub.
   void reach(std::uint32_t t) {
-    if (side(t) == 2 || places_[t] != kNoIndex || partition_.seams[t]) return;
+    if (side(t) == 2 || places_[t] != kNoIndex || partition_.seams[t] || at_hub(t)) return;
     places_[t] = static_cast<std::uint32_t>(band_.size());
     band_.push_back(t);
+  }
+
+  bool at_hub(std::uint32_t t) const {
+    double shortest = std::numeric_limits<double>::infinity(), longest = 0;
+    std::uint32_t apex = 3 * t;  // half-edge that begins across the shortest edge
+    for (std::uint32_t h = 3 * t; h < 3 * t + 3; ++h) {
+      const double length = edge_length(topology_, h);
+      longest = std::max(longest, length);
+      if (length >= shortest) continue;
+      shortest = length;
+      apex = previous_half_edge(h);
+    }
+    if (longest * longest <= kNeedle * 2 * double(topology_.areas[t])) return false;
+    return triangles_around(apex, kHubTriangles) >= kHubTriangles;
+  }
+
+  // Returns the number of triangles around the start of h, or `most` if that is less.
+  int triangles_around(std::uint32_t h, int most) const {
+    int count = 1;
+    std::uint32_t at = topology_.opposite[previous_half_edge(h)];
+    for (; at != kNoIndex && at != h && count < most; ++count)
+      at = topology_.opposite[previous_half_edge(at)];
+    if (at == h) return count;
+    for (at = topology_.opposite[h]; at != kNoIndex && count < most; ++count)
+      at = topology_.opposite[next_half_edge(at)];
+    return count;
   }
 
   // Finds the triangles within `rings` of the border, ordered by connected components.
