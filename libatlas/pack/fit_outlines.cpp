@@ -213,8 +213,8 @@ bool worth_pressing_late(double fill, const FitSearchOptions& options) {
 
 // Returns whether the search over cells may fill a page more that pressing has filled to this
 // share. Thin charts that reach into each other everywhere, as zigzags and combs do, keep more
-// distance as rigid bodies than as masks. Eight sets of charts filled 0.275 of their page on
-// average, and 0.333 by what was fuller, in a third of a second more; two became no fuller.
+// distance as rigid bodies than as masks. Eight sets of charts filled 0.274 of their page on
+// average, and 0.336 by what was fuller, in a third of a second more; two became no fuller.
 bool worth_searching_late(double fill, const FitSearchOptions& options) {
   constexpr double kVeryPoorFill = 0.5, kMostByCells = 1.6;
   return fill < kVeryPoorFill && kMostByCells * fill >= options.wanted_fill;
