@@ -202,8 +202,8 @@ void add_mesh(CLI::App& app, PackCommand& c) {
                    "the file says if libatlas wrote it, else 1")
       ->check(positive());
   mesh->add_option("--rotations", c.rotations,
-                   "Directions tried: 1, 2, 4, 8, 12, ... 64; above 4 a single page's charts may "
-                   "be turned by any angle")
+                   "Directions tried: 1, 2, 4, 8, 12, ... 64; above 4 charts may be turned by any "
+                   "angle")
       ->capture_default_str()
       ->check(CLI::Validator(
           [](std::string& text) {

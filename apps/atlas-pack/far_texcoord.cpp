@@ -15,10 +15,8 @@
 namespace atlas::app {
 namespace {
 
-constexpr double kMost = 1e9;  // texels, as pack/outline.h says
-
 bool too_far(const Vec2d& p) {
-  return !(std::abs(p.x) < kMost && std::abs(p.y) < kMost);
+  return !(std::abs(p.x) < UvCharts::kFarthest && std::abs(p.y) < UvCharts::kFarthest);
 }
 
 // Returns the line and the number, both from 1, of the first `vt` with these coordinates.

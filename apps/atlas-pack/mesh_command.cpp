@@ -135,6 +135,11 @@ double largest_scale(double covered, double page_area, const Context& context) {
   return std::sqrt(page_area / covered);
 }
 
+// Returns whether charts may be turned by other than right angles.
+bool any_angle(const PackCommand& c) {
+  return c.rotations > 4;
+}
+
 // Refuses options that leave no room on a page, or that contradict each other.
 Status check_page(const PackCommand& c, std::int64_t border, std::int64_t padding) {
   const PackOptions& o = c.options;
@@ -178,7 +183,7 @@ Result<FitResult> fit_charts(const PackCommand& c, std::span<const FitItem> item
   fit.max_scale =
       largest_scale(fit.shapes_area, double(c.page_side) * c.page_side * c.pages, context);
   fit.rotations = c.rotations;
-  fit.any_angle = c.rotations > 4;
+  fit.any_angle = any_angle(c);
   Result<FitResult> fitted = fit_boxes_or_outlines(items, fit, context);
   if (!fitted.ok() && fitted.status().code() == ErrorCode::no_solution)
     return Status(
@@ -279,6 +284,7 @@ Result<PackedAtlas> run_mesh(const PackCommand& c, const Context& context) {
   UvCharts charts = find_charts(scene);
   make_uniform(scene, double(c.page_side) * c.page_side * c.pages, charts);
   if (Status s = check_corners(c, charts, context); !s.ok()) return s;
+  if (any_angle(c)) turn_upright(scene, charts, context);
   if (charts.without_uv > 0)
     context.say(fmt::format("triangles without uvs, which get none: {}", charts.without_uv));
   if (charts.without_area > 0)

@@ -1,11 +1,17 @@
 #include "apps/atlas-pack/uv_charts.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <functional>
+#include <span>
+#include <tuple>
 #include <unordered_map>
+#include <utility>
 
 #include "libatlas/core/disjoint_sets.h"
+#include "libatlas/core/parallel.h"
+#include "libatlas/param/orient.h"
 #include "libatlas/scene/triangle_area.h"
 
 namespace atlas::app {
@@ -41,6 +47,37 @@ class CornerPlaces {
   const Scene& scene_;
   std::unordered_map<Key, std::uint32_t, Hash> first_;
 };
+
+using CornerPair = std::array<std::uint32_t, 2>;  // indices into the corners of a chart
+
+// Returns the sides that a single triangle of the chart has.
+std::vector<CornerPair> border_of(const Scene& s, const UvCharts& charts, std::size_t chart) {
+  struct Side {
+    std::uint32_t low, high;  // texcoords
+    CornerPair corners;
+  };
+  std::vector<Side> sides;
+  std::uint32_t corner = 0;
+  for (const std::uint32_t t : charts.members[chart]) {
+    for (std::uint32_t k = 0; k < 3; ++k) {
+      const std::uint32_t next = (k + 1) % 3;
+      const std::uint32_t a = charts.same[s.texcoord_indices[3 * std::size_t(t) + k]],
+                          b = charts.same[s.texcoord_indices[3 * std::size_t(t) + next]];
+      sides.push_back({std::min(a, b), std::max(a, b), {corner + k, corner + next}});
+    }
+    corner += 3;
+  }
+  std::sort(sides.begin(), sides.end(), [](const Side& a, const Side& b) {
+    return std::tie(a.low, a.high, a.corners) < std::tie(b.low, b.high, b.corners);
+  });
+  std::vector<CornerPair> border;
+  for (std::size_t i = 0, end = 0; i < sides.size(); i = end) {
+    while (end < sides.size() && sides[end].low == sides[i].low && sides[end].high == sides[i].high)
+      ++end;
+    if (end == i + 1) border.push_back(sides[i].corners);
+  }
+  return border;
+}
 
 }  // namespace
 
@@ -104,6 +141,20 @@ void make_uniform(const Scene& s, double page_area, UvCharts& charts) {
     for (Vec2d& p : corners) p = {(p.x - base.x) * factor, (p.y - base.y) * factor};
     charts.corners.push_back(std::move(corners));
   }
+}
+
+void turn_upright(const Scene& s, UvCharts& charts, const Context& context) {
+  parallel_for(context, charts.corners.size(), 4, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t c = begin; c < end; ++c) {
+      std::vector<Vec2d> turned = charts.corners[c];
+      // Charts may fold over themselves and so exceed their border. Sides without length make all
+      // corners count for the box.
+      std::vector<CornerPair> sides = border_of(s, charts, c);
+      for (std::uint32_t i = 0; i < turned.size(); ++i) sides.push_back({i, i});
+      const Vec2d size = orient_for_packing(turned, sides).size;
+      if (size.x < UvCharts::kFarthest) charts.corners[c] = std::move(turned);
+    }
+  });
 }
 
 }  // namespace atlas::app

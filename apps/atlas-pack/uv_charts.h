@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "libatlas/core/context.h"
 #include "libatlas/core/vec.h"
 #include "libatlas/scene/scene.h"
 
@@ -19,6 +20,7 @@ struct UvCharts {
   std::vector<std::vector<Vec2d>> corners;  // of each chart, 3 per triangle, texels at scale 1
   std::size_t without_uv = 0, without_area = 0;
   static constexpr std::uint32_t kNone = 0xffffffffu;
+  static constexpr double kFarthest = 1e9;  // corners must be nearer, as pack/outline.h says
 };
 
 // Finds the charts: fills all members except `corners` and `without_area`.
@@ -27,5 +29,10 @@ UvCharts find_charts(const Scene& scene);
 // Scales every chart so that its area is proportional to that of its surface, and all charts
 // together have the area `page_area`, in texels. Fills `corners` and `without_area`.
 void make_uniform(const Scene& scene, double page_area, UvCharts& charts);
+
+// Turns the corners of every chart into its smallest box, or along its straight borders
+// (param/orient.h), as charts that libatlas makes lie. Packing takes charts as they lie first, and
+// those that lie askew keep others from lying straight.
+void turn_upright(const Scene& scene, UvCharts& charts, const Context& context);
 
 }  // namespace atlas::app

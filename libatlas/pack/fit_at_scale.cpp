@@ -98,13 +98,15 @@ class PageSearch {
     return laid_at_most(side);
   }
 
-  // Lays the charts out anew.
+  // Lays the charts out anew. This happens between the pages that report their progress.
   std::optional<FitResult> laid_at_most(std::int32_t side) const {
     FitSearchOptions on_page = options_;
     on_page.page_size = side;
     on_page.tried = 0;
     on_page.free_aspect = false;  // which may choose a smaller scale
-    Result<FitResult> fit = fit_outlines(charts_, on_page, part_of_stage(context_, "packing", 1));
+    Context unreported = context_;
+    unreported.progress = {};
+    Result<FitResult> fit = fit_outlines(charts_, on_page, unreported);
     if (!fit.ok() || fit->scale < most_) return std::nullopt;
     return std::move(*fit);
   }
@@ -144,11 +146,14 @@ class PageSearch {
 Result<FitResult> fit_outlines_at_most(const FitCharts& charts, const FitSearchOptions& options,
                                        const Context& context) {
   if (options.free_aspect && options.pages == 1 && charts.items.size() > 1) {
-    PageSearch search(charts, options, context);
+    constexpr double kSearch = 0.9;  // share of the progress
+    const Context searching = part_of_stage(context, "packing", 0, kSearch);
+    PageSearch search(charts, options, searching);
     if (search.may_shrink()) {
       std::optional<FitResult> found = search.run();
       if (context.cancelled()) return Status::cancelled();
       if (found) return std::move(*found);
+      return fit_outlines(charts, options, part_of_stage(context, "packing", kSearch, 1));
     }
   }
   return fit_outlines(charts, options, context);

@@ -211,6 +211,15 @@ bool worth_pressing_late(double fill, const FitSearchOptions& options) {
   return fill < kPoorFill && kMostPressed * fill >= options.wanted_fill;
 }
 
+// Returns whether the search over cells may fill a page more that pressing has filled to this
+// share. Thin charts that reach into each other everywhere, as zigzags and combs do, keep more
+// distance as rigid bodies than as masks. Eight sets of charts filled 0.274 of their page on
+// average, and 0.336 by what was fuller, in a third of a second more; two became no fuller.
+bool worth_searching_late(double fill, const FitSearchOptions& options) {
+  constexpr double kVeryPoorFill = 0.5, kMostByCells = 1.6;
+  return fill < kVeryPoorFill && kMostByCells * fill >= options.wanted_fill;
+}
+
 // Presses the charts if they are few, else searches for the largest scale at which they fit. On
 // pages of given shape, it looks for scales above `known` only, and returns nothing if there is
 // none.
@@ -227,7 +236,10 @@ Result<std::optional<FitResult>> search_outlines(const FitCharts& charts,
   // far cheaper.
   const bool many = options.free_aspect && items.size() > kFewInRows;
   if (context.cancelled()) return Status::cancelled();
-  if (pressed && (many || options.tried > 0 || !is_straight(outlines))) return pressed;
+  const bool by_both =
+      pressed && options.tried == 0 &&
+      ((!many && is_straight(outlines)) || worth_searching_late(pressed->utilization, options));
+  if (pressed && !by_both) return pressed;
   FitOptions by_cells = options;
   if (pressed) by_cells.preset = PackPreset::standard;
   FitOptions by_quarters = by_cells;

@@ -55,7 +55,8 @@ class Press {
     while (!context_.cancelled()) {
       draw(best);
       const double done = spent_share(options_, wall_seconds() - begun, best);
-      if (alone()) break;
+      // Charts that could not be settled once, thin ones that interlock everywhere, never are.
+      if (alone() || best.scale == 0) break;
       if (options_.preset == PackPreset::best) {
         if (!(done < 1)) break;
         context_.report("packing", done);

@@ -1,9 +1,11 @@
 // Pages of any shape whose charts have a given scale.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <atomic>
 #include <cmath>
 #include <numbers>
+#include <string_view>
 #include <vector>
 
 #include "tests/pack/checks.h"
@@ -115,6 +117,24 @@ TEST(FitAtScale, DoesNotDependOnThreads) {
   const Result<FitResult> three = fit_pages(charts.items, options, Context{.threads = 3});
   ASSERT_TRUE(one.ok() && three.ok());
   test::expect_same(*one, *three);
+}
+
+// More than 128 charts are laid out anew on each page that has room to spare. Rectangles fill their
+// first page so well that a smaller one follows.
+TEST(FitAtScale, ProgressRises) {
+  Shapes shapes;
+  for (int k = 0; k < 160; ++k) {
+    const double w = 40 + k % 16, h = 30 + k % 7;
+    shapes.push_back({{0, 0}, {w, 0}, {w, h}, {0, 0}, {w, h}, {0, h}});
+  }
+  const test::ChartItems charts(std::move(shapes));
+  Context context{.threads = 1};
+  std::vector<double> fractions{0};
+  context.progress = [&](std::string_view, double fraction) { fractions.push_back(fraction); };
+  ASSERT_TRUE(fit_pages(charts.items, at_scale(charts, 4096, 1), context).ok());
+  EXPECT_TRUE(std::is_sorted(fractions.begin(), fractions.end()));
+  EXPECT_GT(fractions.size(), 10u);
+  EXPECT_LE(fractions.back(), 1);
 }
 
 TEST(FitAtScale, CanBeCancelled) {

@@ -275,6 +275,51 @@ TEST(Press, WhatIsFarFromTheFillWantedIsNotDrawnAgain) {
   EXPECT_EQ(page.scale, usual.scale);
 }
 
+// Thin zigzags that reach into each other, turned by multiples of half a radian.
+test::ChartItems zigzags(int count, int teeth, double height, double width) {
+  std::vector<std::vector<Vec2d>> shapes;
+  for (int k = 0; k < count; ++k) {
+    std::vector<Vec2d> corners;
+    for (int x = 0; x < teeth; ++x) {
+      const double low = x % 2 * height, high = height - low;
+      const Vec2d a{double(x), low}, b{x + 1.0, high}, c{x + 1.0, high + width},
+          d{a.x, low + width};
+      corners.insert(corners.end(), {a, b, c, a, c, d});
+    }
+    for (Vec2d& p : corners)
+      p = {std::cos(0.5 * k) * p.x - std::sin(0.5 * k) * p.y,
+           std::sin(0.5 * k) * p.x + std::cos(0.5 * k) * p.y};
+    shapes.push_back(std::move(corners));
+  }
+  return test::ChartItems(std::move(shapes));
+}
+
+// Three draws of such charts took 22 seconds in vain.
+TEST(Press, ChartsThatCannotBeSettledAreDrawnOnce) {
+  const test::ChartItems charts = zigzags(10, 4, 6, 0.8);
+  const PressedPage page =
+      press_outlines(outlines_of(charts.shapes, {}), options_for(charts, 256), {});
+  EXPECT_EQ(page.scale, 0);
+  EXPECT_EQ(page.draws, 1u);
+}
+
+// Where pressing fills little of a page, the search over cells may fill half as much again.
+TEST(Press, PagesThatStayEmptyAreAlsoFilledByCells) {
+  const test::ChartItems charts = zigzags(12, 3, 4, 0.5);
+  FitSearchOptions o = options_for(charts, 256);
+  o.free_aspect = false;
+  o.rotations = 16;
+  const PressedPage pressed = press_outlines(outlines_of(charts.shapes, {}), o, {});
+  ASSERT_GT(pressed.scale, 0);
+  FitSearchOptions by_cells = o;
+  by_cells.any_angle = false;
+  const Result<FitResult> fit = fit_pages(charts.items, o, {}),
+                          cells = fit_pages(charts.items, by_cells, {});
+  ASSERT_TRUE(fit.ok() && cells.ok());
+  EXPECT_GT(cells->scale, 1.05 * pressed.scale);
+  EXPECT_EQ(fit->scale, cells->scale);
+}
+
 // `best` continues after the draws of `standard`: told how many layouts were tried, it begins with
 // draws that `standard` cannot have made, of more layouts each.
 TEST(Press, BestGoesOnAfterStandard) {

@@ -76,6 +76,19 @@ class PackedPages : public AtlasPack {
     }
     write("m.obj", text);
   }
+  // Rectangles of different sizes, each turned by another multiple of `degrees`.
+  void write_rectangles(int count, double degrees) const {
+    std::string text;
+    for (int k = 0; k < count; ++k) {
+      const double angle = k * degrees * std::numbers::pi / 180, c = std::cos(angle),
+                   s = std::sin(angle);
+      const double w = 1 + 0.1 * (k % 8), h = 1 + 0.2 * (k % 5);
+      for (const auto& [x, y] : {std::pair(0., 0.), {w, 0.}, {w, h}, {0., h}})
+        text += fmt::format("v {} {} 0\nvt {} {}\n", 9 * k + x, y, c * x - s * y, s * x + c * y);
+      text += "f -4/-4 -3/-3 -2/-2\nf -4/-4 -2/-2 -1/-1\n";
+    }
+    write("m.obj", text);
+  }
   std::vector<Page> packed(const std::string& options) const {
     const RunResult r = run("mesh m.obj -o out.obj -q --padding 0 " + options);
     EXPECT_EQ(r.exit_code, 0) << r.output;
@@ -100,6 +113,43 @@ TEST_F(PackedPages, ChartsTurnByTheDirectionsAskedFor) {
     EXPECT_NEAR(std::min(pages[0].width, pages[0].height), 26, 1) << rotations;
     EXPECT_GE(std::max(pages[0].width, pages[0].height), 255) << rotations;
   }
+}
+
+double longest_first_edge(const std::vector<Page>& pages) {
+  double longest = 0;
+  for (const Page& page : pages)
+    for (const auto& [a, b] : page.first_edges)
+      longest = std::max(longest, std::hypot(b.x - a.x, b.y - a.y));
+  return longest;
+}
+
+// Charts are packed from where they lie straight, few or many, on one page or several.
+TEST_F(PackedPages, ChartsThatLieAskewFillPagesAsStraightOnesDo) {
+  for (const auto& [count, pages] : {std::pair(20, 1), {130, 1}, {12, 2}}) {
+    const std::string options = fmt::format("--page 512 --pages {}", pages);
+    write_rectangles(count, 0);
+    const double straight = longest_first_edge(packed(options));
+    write_rectangles(count, 31);
+    EXPECT_GT(longest_first_edge(packed(options)), 0.99 * straight) << count;
+  }
+}
+
+// Only the middle of this fan, which is no corner of its border, lies outside of the border.
+TEST_F(PackedPages, ChartsThatFoldOverTheirBorderKeepTheirShape) {
+  std::string text = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv .5 .5 0\n";
+  text += "vt 0 0\nvt 1 .3\nvt .7 1.3\nvt -.3 1\nvt -5 .5\n";
+  for (int k = 1; k <= 4; ++k) text += fmt::format("f 5/5 {0}/{0} {1}/{1}\n", k, k % 4 + 1);
+  write("m.obj", text);
+  const std::vector<Page> pages = packed("--page 256");
+  ASSERT_EQ(pages.size(), 1u);
+  ASSERT_EQ(pages[0].first_edges.size(), 4u);
+  const auto length = [&](std::size_t k) {
+    const auto& [a, b] = pages[0].first_edges[k];
+    return std::hypot(b.x - a.x, b.y - a.y);
+  };
+  EXPECT_NEAR(length(1) / length(0), std::hypot(6, .2) / std::hypot(5, .5), 1e-3);
+  EXPECT_NEAR(length(2) / length(0), std::hypot(5.7, .8) / std::hypot(5, .5), 1e-3);
+  EXPECT_NEAR(length(3) / length(0), std::hypot(4.7, .5) / std::hypot(5, .5), 1e-3);
 }
 
 // Triangles that lie alike fill a page less well than those that may be turned.
