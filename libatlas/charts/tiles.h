@@ -17,12 +17,12 @@ struct TileLimits {
 };
 
 // Cuts every chart whose box is longer than its limit across its long side, repeatedly, until the
-// pieces fit, or are hardly longer than their own triangles (a disc as a fan gives quarters), or no
-// cut divides them. A cut is the shortest path along edges near the even share; on
-// regular meshes it is straight. Pieces keep their parent's uvs, shifted, and turned for packing
-// (those of given charts, Chart::kept, by 90 degrees at most), and therefore stay injective. What
-// stretched a small part of a chart by more than max_stretch may be a large part of a piece: such a
-// piece is relaxed or cut further, unless the parent itself exceeds the bound or was given
+// pieces fit, or no cut divides them, or more than eight triangles are left that are about as long
+// as the piece (a disc as a fan gives quarters). A cut is the shortest path along edges near the
+// even share; on regular meshes it is straight. Pieces keep their parent's uvs, shifted, and turned
+// for packing (those of given charts, Chart::kept, by 90 degrees at most), and so stay injective.
+// What stretched a small part of a chart by more than max_stretch may be a large part of a piece:
+// such a piece is relaxed or cut further, unless the parent itself exceeds the bound or was given
 // (Chart::kept). Each piece is connected by edges. Cone and axis stay the parent's; distortion is
 // measured again, and so is the total. Charts within their limit keep their order; pieces take the
 // place of their parent. Returns how many charts were cut. The result is the same for every thread
