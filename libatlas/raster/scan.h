@@ -55,14 +55,81 @@ struct Edge {
   }
 };
 
-// Narrows [lo, hi] to the i with value + slope * i >= 0.
-inline void clip_span(std::int64_t value, std::int64_t slope, std::int64_t& lo, std::int64_t& hi) {
+// The floor of a value over the size of a slope, in a row and, without another division, in the
+// rows after it. Tall triangles spend most of their time in these divisions otherwise.
+class Quotient {
+ public:
+  // `step` is what the value grows by from row to row. Without a slope the floor is not used.
+  Quotient(std::int64_t value, std::int64_t slope, std::int64_t step)
+      : size_(slope < 0 ? -slope : slope) {
+    if (size_ == 0) return;
+    floor_ = floor_div(value, size_);
+    rest_ = value - floor_ * size_;
+    floor_step_ = floor_div(step, size_);
+    rest_step_ = step - floor_step_ * size_;
+  }
+  std::int64_t floor() const { return floor_; }
+  void next_row() {
+    floor_ += floor_step_;
+    rest_ += rest_step_;
+    const std::int64_t carry = rest_ >= size_;
+    floor_ += carry;
+    rest_ -= carry * size_;
+  }
+
+ private:
+  std::int64_t size_, floor_ = 0, rest_ = 0, floor_step_ = 0, rest_step_ = 0;
+};
+
+// Narrows [lo, hi] to the i with value + slope * i >= 0, where `floor` is that of value / |slope|.
+inline void clip_span(std::int64_t value, std::int64_t slope, std::int64_t floor, std::int64_t& lo,
+                      std::int64_t& hi) {
   if (slope > 0) {
-    if (value < 0) lo = std::max(lo, (-value + slope - 1) / slope);
+    lo = std::max(lo, -floor);
   } else if (slope < 0) {
-    hi = std::min(hi, floor_div(value, -slope));
+    hi = std::min(hi, floor);
   } else if (value < 0) {
     hi = lo - 1;
+  }
+}
+
+// The values of a triangle's edges at the first sample point of a row, by how much they grow from
+// point to point, and from row to row.
+struct EdgeRows {
+  std::int64_t value[3], slope[3], step[3];
+
+  void next_row() {
+    for (int k = 0; k < 3; ++k) value[k] += step[k];
+  }
+  bool outside(std::int64_t i) const {
+    return ((value[0] + slope[0] * i) | (value[1] + slope[1] * i) | (value[2] + slope[2] * i)) < 0;
+  }
+};
+
+// Calls give(y, lo, hi) for rows y with the range of points inside, of points 0 to `last`; hi < lo:
+// none. Of a few points it tests each, which is cheaper than divisions.
+template <class Give>
+void scan_rows(EdgeRows rows, std::int64_t y_lo, std::int64_t y_hi, std::int64_t last,
+               const Give& give) {
+  constexpr std::int64_t kFew = 4;
+  if (last < kFew) {
+    for (std::int64_t y = y_lo; y <= y_hi; ++y, rows.next_row()) {
+      std::int64_t lo = 0, hi = last;
+      while (lo <= hi && rows.outside(lo)) ++lo;
+      while (hi >= lo && rows.outside(hi)) --hi;
+      give(y, lo, hi);
+    }
+    return;
+  }
+  const auto quotient = [&](int k) { return Quotient(rows.value[k], rows.slope[k], rows.step[k]); };
+  Quotient quotients[3] = {quotient(0), quotient(1), quotient(2)};
+  for (std::int64_t y = y_lo; y <= y_hi; ++y, rows.next_row()) {
+    std::int64_t lo = 0, hi = last;
+    for (int k = 0; k < 3; ++k) {
+      clip_span(rows.value[k], rows.slope[k], quotients[k].floor(), lo, hi);
+      quotients[k].next_row();
+    }
+    give(y, lo, hi);
   }
 }
 
@@ -100,27 +167,16 @@ void scan_triangle(const TexelTriangle& p, const Rect& clip, Vec2d offset, Span&
   if (x_lo > x_hi || y_lo > y_hi) return;
 
   const Edge edge[3] = {Edge(v[0], v[1], rule), Edge(v[1], v[2], rule), Edge(v[2], v[0], rule)};
-  std::int64_t row[3], slope[3];
+  EdgeRows rows;
   for (int k = 0; k < 3; ++k) {
-    row[k] = edge[k].value(x_lo * kOne, y_lo * kOne);
-    slope[k] = -edge[k].dy * kOne;
+    rows.value[k] = edge[k].value(x_lo * kOne, y_lo * kOne);
+    rows.slope[k] = -edge[k].dy * kOne;
+    rows.step[k] = edge[k].dx * kOne;
   }
-  for (std::int64_t y = y_lo; y <= y_hi; ++y) {
-    std::int64_t lo = 0, hi = x_hi - x_lo;
-    if (hi < 4) {  // testing a few points is cheaper than three divisions
-      while (lo <= hi &&
-             ((row[0] + slope[0] * lo) | (row[1] + slope[1] * lo) | (row[2] + slope[2] * lo)) < 0)
-        ++lo;
-      while (hi >= lo &&
-             ((row[0] + slope[0] * hi) | (row[1] + slope[1] * hi) | (row[2] + slope[2] * hi)) < 0)
-        --hi;
-    } else {
-      for (int k = 0; k < 3; ++k) clip_span(row[k], slope[k], lo, hi);
-    }
+  scan_rows(rows, y_lo, y_hi, x_hi - x_lo, [&](std::int64_t y, std::int64_t lo, std::int64_t hi) {
     if (lo <= hi)
       span(static_cast<int>(y), static_cast<int>(x_lo + lo), static_cast<int>(x_lo + hi + 1));
-    for (int k = 0; k < 3; ++k) row[k] += edge[k].dx * kOne;
-  }
+  });
 }
 
 }  // namespace atlas
