@@ -90,7 +90,7 @@ class Tiler {
       pieces_.push_back(std::move(piece));
       return;
     }
-    const std::vector<std::vector<std::uint32_t>> parts = divide(piece, box, limit);
+    const std::vector<std::vector<std::uint32_t>> parts = divide(piece, box);
     // A single triangle, or no cut separates anything.
     if (parts.empty()) {
       keeps_to_bound(piece);
@@ -104,8 +104,7 @@ class Tiler {
     }
   }
 
-  std::vector<std::vector<std::uint32_t>> divide(const FlatChart& piece, const Box& box,
-                                                 double limit) const {
+  std::vector<std::vector<std::uint32_t>> divide(const FlatChart& piece, const Box& box) const {
     std::vector<std::uint32_t> all(piece.triangles.size());
     std::iota(all.begin(), all.end(), 0u);
     param::HalfEdges half_edges;
@@ -114,9 +113,9 @@ class Tiler {
     const glm::dvec2 size = box.size();
     const int axis = size.x >= size.y ? 0 : 1;
     cutter.face(axis == 0 ? 0 : std::numbers::pi / 2);
-    const double shares = std::max(2.0, std::ceil(size[axis] / limit));
+    const double shares = std::max(2.0, std::ceil(size[axis] / limit_));
     const double share = size[axis] / shares, line = box.low[axis] + share * std::ceil(shares / 2);
-    const double band = std::clamp(limit / share - 1, kLeastBand, kMostBand) * share;
+    const double band = std::clamp(limit_ / share - 1, kLeastBand, kMostBand) * share;
     const double crumb = kCrumb * size.x * size.y / shares;
     LineCut cut = cutter.cut(line, band, crumb);
     // Triangles as large as the piece are divided by their centroids.

@@ -1,4 +1,4 @@
-// Internal: turns a chart for the packer.
+// Turns a chart for the packer.
 #pragma once
 
 #include <array>
