@@ -21,7 +21,8 @@ struct PushWork {
 // of the opposite edge, so the two near corners of a sliver are parted. Starts from the exact uvs,
 // and moves none by more than some thousand steps between floats, nor by more than `farthest` from
 // `home` (one per uv). What takes too many pushes stays as it is. The time does not grow with the
-// square of the number of triangles at a uv.
+// square of the number of triangles at a uv, as only those are looked at again that may lack height
+// after its way so far.
 PushWork push_slivers(const ExactTriangles& triangles, std::span<const Vec2d> home, double farthest,
                       std::vector<Vec2f>& uvs);
 

@@ -53,7 +53,7 @@ std::size_t count_thin(const FlatMesh& mesh, const std::vector<Vec2f>& uvs) {
 
 // Each push moves the uv in the middle, and with it all triangles, but hardly.
 TEST(PushSlivers, FansTakeWorkInProportionToTheirTriangles) {
-  for (const std::uint32_t n : {30u, 300u, 3000u, 30000u}) {
+  for (const std::uint32_t n : {300u, 3000u, 30000u}) {
     SCOPED_TRACE(n);
     const FlatMesh mesh = fan(n);
     Input input(mesh);
