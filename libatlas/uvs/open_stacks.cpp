@@ -1,6 +1,6 @@
 #include "libatlas/uvs/open_stacks.h"
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <Eigen/SparseCholesky>
 #include <algorithm>
 #include <array>
@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "libatlas/core/no_index.h"
+#include "libatlas/uvs/barrier_hessian.h"
 #include "libatlas/uvs/thin_uvs.h"
 
 namespace atlas {
@@ -58,9 +59,12 @@ class StackOpener {
     origin_ = exact[stack.members.front()];
   }
 
+  const StackWork& work() const { return work_; }
+
   // Returns how far each member moves from its exact place.
   std::vector<glm::dvec2> run(double farthest) {
     Vector x = Vector::Zero(Eigen::Index(2 * stack_.members.size()));
+    find_pattern(x);
     for (const double tether : kTethers) {
       if (tether * kUvStep > farthest) break;
       find_targets(x);
@@ -121,21 +125,59 @@ class StackOpener {
     return sum;
   }
 
+  static Eigen::Index index(const Corner& c, int i) {
+    return Eigen::Index(2 * std::size_t(c.place)) + i % 2;
+  }
+
+  // Lists the entries of the Hessian below the diagonal that some triangle may ever add to, so that
+  // they are analysed once.
+  void find_pattern(const Vector& x) {
+    std::vector<Eigen::Triplet<double>> entries;
+    for (int i = 0; i < x.size(); ++i) entries.emplace_back(i, i, 0);
+    for (const std::uint32_t t : stack_.triangles) {
+      visit_entries(corners(t, x), [&](int, int, Eigen::Index row, Eigen::Index column) {
+        entries.emplace_back(int(row), int(column), 0);
+      });
+    }
+    hessian_.resize(x.size(), x.size());
+    hessian_.setFromTriplets(entries.begin(), entries.end());
+    factor_.analyzePattern(hessian_);
+    ++work_.patterns;
+    for (const std::uint32_t t : stack_.triangles) {
+      slots_.push_back(places_.size());
+      visit_entries(corners(t, x), [&](int, int, Eigen::Index row, Eigen::Index column) {
+        places_.push_back(std::size_t(&hessian_.coeffRef(row, column) - hessian_.valuePtr()));
+      });
+    }
+  }
+
+  // Calls visit() with the rows and columns of a triangle's own Hessian that belong to members and
+  // come to lie on or below the diagonal, and with the row and column where they lie then.
+  template <class Visit>
+  static void visit_entries(const std::array<Corner, 3>& c, const Visit& visit) {
+    for (int j = 0; j < 6; ++j) {
+      if (c[std::size_t(j / 2)].place == kNoIndex) continue;
+      for (int i = 0; i < 6; ++i) {
+        if (c[std::size_t(i / 2)].place == kNoIndex) continue;
+        const Eigen::Index row = index(c[std::size_t(i / 2)], i);
+        const Eigen::Index column = index(c[std::size_t(j / 2)], j);
+        if (row >= column) visit(i, j, row, column);
+      }
+    }
+  }
+
   // Makes one step of Newton's method, halved until no triangle closes and the energy falls.
   // Returns false if that gains nothing.
-  bool descend(Vector& x, double tether) const {
+  bool descend(Vector& x, double tether) {
     const double weight = 1 / (tether * tether);
     Vector gradient = weight * x;
-    std::vector<Eigen::Triplet<double>> entries;
-    for (int i = 0; i < x.size(); ++i) entries.emplace_back(i, i, weight);
-    for (std::size_t i = 0; i < stack_.triangles.size(); ++i) {
-      add_barrier(corners(stack_.triangles[i], x), targets_[i], gradient, entries);
-    }
-    Eigen::SparseMatrix<double> hessian(x.size(), x.size());
-    hessian.setFromTriplets(entries.begin(), entries.end());
-    const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> factor(hessian);
-    if (factor.info() != Eigen::Success) return false;
-    const Vector step = -factor.solve(gradient);
+    hessian_.coeffs().setZero();
+    hessian_.diagonal().setConstant(weight);
+    for (std::size_t i = 0; i < stack_.triangles.size(); ++i) add_barrier(i, x, gradient);
+    factor_.factorize(hessian_);
+    ++work_.solves;
+    if (factor_.info() != Eigen::Success) return false;
+    const Vector step = -factor_.solve(gradient);
     const double slope = gradient.dot(step), before = energy(x, tether);
     double share = 1;
     for (int i = 0; i < kMostHalvings; ++i, share /= 2) {
@@ -147,40 +189,28 @@ class StackOpener {
     return false;
   }
 
-  // Adds the gradient of the barrier, and the positive semidefinite part of its Hessian.
-  static void add_barrier(const std::array<Corner, 3>& c, double target, Vector& gradient,
-                          std::vector<Eigen::Triplet<double>>& entries) {
+  // Adds the gradient of a triangle's barrier, and the positive semidefinite part of its Hessian.
+  void add_barrier(std::size_t triangle, const Vector& x, Vector& gradient) {
+    const auto c = corners(stack_.triangles[triangle], x);
+    const double target = targets_[triangle];
     const Barrier barrier(twice_area(c) / target);
     if (barrier.value <= 0) return;
-    Eigen::Matrix<double, 6, 1> g;  // gradient of the height
+    const double slope = barrier.slope / target;
+    Eigen::Matrix<double, 6, 1> g;  // gradient of twice the area
     for (int k = 0; k < 3; ++k) {
       const glm::dvec2 across = c[std::size_t(k + 2) % 3].at - c[std::size_t(k + 1) % 3].at;
-      g[2 * k] = -across.y / target;
-      g[2 * k + 1] = across.x / target;
+      g[2 * k] = -across.y;
+      g[2 * k + 1] = across.x;
     }
-    Eigen::Matrix<double, 6, 6> h = barrier.curvature * g * g.transpose();
-    for (int k = 0; k < 3; ++k) {
-      // The second derivatives of the cross product of corners k and k + 1.
-      const int p = 2 * k, q = 2 * ((k + 1) % 3);
-      const double part = barrier.slope / target;
-      h(p, q + 1) += part;
-      h(q + 1, p) += part;
-      h(p + 1, q) -= part;
-      h(q, p + 1) -= part;
-    }
-    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, 6, 6>> eigen(h);
-    h = eigen.eigenvectors() * eigen.eigenvalues().cwiseMax(0).asDiagonal() *
-        eigen.eigenvectors().transpose();
     for (int i = 0; i < 6; ++i) {
-      const std::uint32_t row = c[std::size_t(i / 2)].place;
-      if (row == kNoIndex) continue;
-      gradient[2 * row + std::uint32_t(i % 2)] += barrier.slope * g[i];
-      for (int j = 0; j < 6; ++j) {
-        const std::uint32_t column = c[std::size_t(j / 2)].place;
-        if (column == kNoIndex) continue;
-        entries.emplace_back(int(2 * row) + i % 2, int(2 * column) + j % 2, h(i, j));
-      }
+      const Corner& corner = c[std::size_t(i / 2)];
+      if (corner.place != kNoIndex) gradient[index(corner, i)] += slope * g[i];
     }
+    const auto h = positive_barrier_hessian(g, barrier.curvature / (target * target), -slope);
+    const std::size_t* place = places_.data() + slots_[triangle];
+    visit_entries(c, [&](int i, int j, Eigen::Index, Eigen::Index) {
+      hessian_.valuePtr()[*place++] += h(i, j);
+    });
   }
 
   std::vector<glm::dvec2> moves(const Vector& x) const {
@@ -196,7 +226,13 @@ class StackOpener {
   const Stack& stack_;
   std::vector<std::uint32_t>& place_;  // one per uv: its place among the members, or kNoIndex
   glm::dvec2 origin_;
-  std::vector<double> targets_;  // one per triangle: twice the area wanted, squared steps
+  std::vector<double> targets_;          // one per triangle: twice the area wanted, squared steps
+  Eigen::SparseMatrix<double> hessian_;  // on and below the diagonal
+  Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> factor_;
+  // Where the entries of all triangles lie among the Hessian's, as visit_entries() goes through
+  // them; and one per triangle: the first of its entries there.
+  std::vector<std::size_t> places_, slots_;
+  StackWork work_;
 };
 
 class StackFinder {
@@ -264,10 +300,10 @@ class StackUvs {
         place_(uvs.size(), kNoIndex),
         in_vain_(triangles.corners.size() / 3, 0) {}
 
-  void run() {
+  StackWork run() {
     for (std::uint32_t t = 0; t < in_vain_.size(); ++t) {
       for (int rings = 0; rings <= kMostRings && !in_vain_[t] && thin(t); ++rings) {
-        if (moved_ >= kMostInAll) return;
+        if (moved_ >= kMostInAll) return work_;
         const Stack stack = finder_.find(t, rings, place_);
         open(stack);
         for (const std::uint32_t uv : stack.members) place_[uv] = kNoIndex;
@@ -276,6 +312,7 @@ class StackUvs {
         for (const std::uint32_t other : stack.triangles) in_vain_[other] = 1;
       }
     }
+    return work_;
   }
 
  private:
@@ -291,8 +328,10 @@ class StackUvs {
                            [&](std::uint32_t t) { return thin(t); });
     };
     const auto before = count_thin();
-    const std::vector<glm::dvec2> moves =
-        StackOpener(corners_, exact_, stack, place_).run(farthest_);
+    StackOpener opener(corners_, exact_, stack, place_);
+    const std::vector<glm::dvec2> moves = opener.run(farthest_);
+    work_.patterns += opener.work().patterns;
+    work_.solves += opener.work().solves;
     moved_ += moves.size();
     for (const glm::dvec2& move : moves)
       if (std::max(std::fabs(move.x), std::fabs(move.y)) > farthest_) return;
@@ -314,12 +353,13 @@ class StackUvs {
   std::vector<std::uint32_t> place_;   // one per uv
   std::vector<std::uint8_t> in_vain_;  // one per triangle: was tried in vain
   std::size_t moved_ = 0;
+  StackWork work_;
 };
 
 }  // namespace
 
-void open_stacks(const ExactTriangles& triangles, double farthest, std::vector<Vec2f>& uvs) {
-  StackUvs(triangles, farthest, uvs).run();
+StackWork open_stacks(const ExactTriangles& triangles, double farthest, std::vector<Vec2f>& uvs) {
+  return StackUvs(triangles, farthest, uvs).run();
 }
 
 }  // namespace atlas

@@ -18,6 +18,12 @@ struct ExactTriangles {
   std::span<const glm::dvec2> exact;       // one per uv
 };
 
+// What opening took, for tests.
+struct StackWork {
+  std::size_t patterns = 0;  // analyses of which entries of a matrix are not zero
+  std::size_t solves = 0;
+};
+
 // Opens stacks of thin triangles that cannot be opened one by one: their uvs, or those at their far
 // ends, would have to move along the slivers by much more than these lack in height. All uvs of a
 // stack move at once, so that each triangle there gets a height that rounding leaves open, and none
@@ -27,6 +33,6 @@ struct ExactTriangles {
 // `farthest` (a share of the page). A stack that needs more stays as it is. A move is kept only if
 // it leaves fewer thin triangles (thin_uvs.h). Triangles that are turned over in their exact uvs
 // stay as they are.
-void open_stacks(const ExactTriangles& triangles, double farthest, std::vector<Vec2f>& uvs);
+StackWork open_stacks(const ExactTriangles& triangles, double farthest, std::vector<Vec2f>& uvs);
 
 }  // namespace atlas

@@ -1,0 +1,81 @@
+// Pushing slivers open, and opening stacks of them, takes work in proportion to the mesh.
+#include "libatlas/uvs/push_slivers.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdint>
+#include <vector>
+
+#include "libatlas/core/glm_bridge.h"
+#include "libatlas/uvs/thin_uvs.h"
+#include "tests/uvs/flat_mesh.h"
+
+namespace atlas::test {
+namespace {
+
+// A disc of triangles around one uv. Every third one is a sliver.
+FlatMesh fan(std::uint32_t n) {
+  FlatMesh mesh;
+  mesh.uvs.push_back({0.5, 0.5});
+  const double whole = 2 * M_PI / (2 * (n / 3) + 1e-6);
+  double angle = 0;
+  for (std::uint32_t i = 0; i < n; ++i) {
+    mesh.uvs.push_back({0.5 + 0.4 * std::cos(angle), 0.5 + 0.4 * std::sin(angle)});
+    mesh.corners.insert(mesh.corners.end(), {0, 1 + i, 1 + (i + 1) % n});
+    angle += i % 3 == 0 ? 1e-9 : whole;
+  }
+  return mesh;
+}
+
+struct Input {
+  explicit Input(const FlatMesh& mesh)
+      : corners_at(sort_into_buckets(mesh.corners.size(), mesh.uvs.size(),
+                                     [&](std::size_t c) { return mesh.corners[c]; })) {
+    for (const Vec2d& p : mesh.uvs) {
+      exact.push_back(to_glm(p));
+      uvs.push_back(rounded_uv(to_glm(p)));
+    }
+  }
+
+  Buckets corners_at;
+  std::vector<glm::dvec2> exact;
+  std::vector<Vec2f> uvs;
+};
+
+std::size_t count_thin(const FlatMesh& mesh, const std::vector<Vec2f>& uvs) {
+  const std::span<const std::uint32_t> corners = mesh.corners;
+  std::size_t count = 0;
+  for (std::size_t t = 0; t < corners.size(); t += 3)
+    count += is_thin(corners.subspan(t).first<3>(), uvs);
+  return count;
+}
+
+// Each push moves the uv in the middle, and with it all triangles, but hardly.
+TEST(PushSlivers, FansTakeWorkInProportionToTheirTriangles) {
+  for (const std::uint32_t n : {300u, 3000u, 30000u}) {
+    SCOPED_TRACE(n);
+    const FlatMesh mesh = fan(n);
+    Input input(mesh);
+    EXPECT_GT(count_thin(mesh, input.uvs), n / 4);
+    const PushWork work =
+        push_slivers({mesh.corners, input.corners_at, input.exact}, mesh.uvs, 1, input.uvs);
+    EXPECT_EQ(count_thin(mesh, input.uvs), 0u);
+    EXPECT_GE(work.pushes, n / 4);
+    EXPECT_LE(work.pushes, 2 * n);
+    EXPECT_LE(work.looks, 100 * std::size_t(n));
+  }
+}
+
+TEST(OpenStacks, EachStackIsAnalysedOnce) {
+  const FlatMesh mesh = leaning_slivers();
+  Input input(mesh);
+  ASSERT_GT(count_thin(mesh, input.uvs), 0u);
+  const StackWork work = open_stacks({mesh.corners, input.corners_at, input.exact}, 1, input.uvs);
+  EXPECT_EQ(count_thin(mesh, input.uvs), 0u);
+  EXPECT_GE(work.solves, 20u) << "the test is too easy";
+  EXPECT_LE(work.patterns, 4u) << "one, and one for each ring around it";
+}
+
+}  // namespace
+}  // namespace atlas::test
