@@ -2,8 +2,26 @@
 
 #include <algorithm>
 
+#include "libatlas/core/glm_bridge.h"
+
 namespace atlas {
 namespace {
+
+// The cosine of the angle from which a triangle counts as far from its cell, too.
+constexpr float kFoldCosine = 0.57f;
+
+// Calls visit(piece, t, o) for every edge between two triangles of a piece that is taken.
+template <typename Visit>
+void for_each_edge(const Cut& cut, const Visit& visit) {
+  const Topology& topology = cut.topology;
+  for (std::uint32_t t = 0; t < topology.triangle_count(); ++t) {
+    if (!cut.takes(t)) continue;
+    for (std::uint32_t h = 3 * t; h < 3 * t + 3; ++h) {
+      const std::uint32_t o = topology.opposite[h];
+      if (o != kNoIndex && o > h) visit(topology.component[t], t, o / 3);
+    }
+  }
+}
 
 std::vector<PieceCost> piece_costs(const Cut& cut) {
   std::vector<PieceCost> costs(cut.topology.component_count);
@@ -47,6 +65,38 @@ std::vector<double> fan_errors(const Cut& cut) {
     if (area[k] > 0) error[k] /= area[k];
   }
   return error;
+}
+
+std::vector<double> folds_in_cells(const Cut& cut) {
+  const Topology& topology = cut.topology;
+  const std::vector<std::uint32_t>& cell = cut.cells.of_triangle;
+  std::vector<double> folds(topology.component_count, 0), triangles(folds);
+  for (std::uint32_t t = 0; t < topology.triangle_count(); ++t) {
+    if (cut.takes(t)) ++triangles[topology.component[t]];
+  }
+  for_each_edge(cut, [&](std::uint32_t piece, std::uint32_t t, std::uint32_t u) {
+    if (cell[t] != cell[u]) return;
+    const glm::vec3 a = to_glm(topology.calm_normal(t)), b = to_glm(topology.calm_normal(u));
+    if (glm::dot(a, b) < kFoldCosine) ++folds[piece];
+  });
+  for (std::size_t k = 0; k < folds.size(); ++k) {
+    if (triangles[k] > 0) folds[k] /= triangles[k];
+  }
+  return folds;
+}
+
+std::vector<double> crossed_borders(const Cut& cut, const Regions& regions) {
+  const std::vector<std::uint32_t>& cell = cut.cells.of_triangle;
+  std::vector<double> crossed(cut.topology.component_count, 0), all(crossed);
+  for_each_edge(cut, [&](std::uint32_t piece, std::uint32_t t, std::uint32_t u) {
+    if (!regions.part(t, u)) return;
+    ++all[piece];
+    if (cell[t] == cell[u]) ++crossed[piece];
+  });
+  for (std::size_t k = 0; k < crossed.size(); ++k) {
+    if (all[k] > 0) crossed[k] /= all[k];
+  }
+  return crossed;
 }
 
 std::vector<PieceCost> chosen_costs(std::span<const Cut> cuts) {

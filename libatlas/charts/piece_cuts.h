@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "libatlas/charts/cells/cells.h"
+#include "libatlas/charts/cells/regions.h"
 #include "libatlas/charts/merging/coarse.h"
 #include "libatlas/charts/merging/merge.h"
 #include "libatlas/charts/mesh/topology.h"
@@ -34,6 +35,13 @@ std::vector<std::uint32_t> pieces_of(const Cut& cut);
 // Returns the mean fan_error() in each piece, weighted by the cells' areas; 0 if it is left out.
 // The cells need not be merged.
 std::vector<double> fan_errors(const Cut& cut);
+
+// Returns, for each piece, how many edges within its cells bend by more than 55 degrees, divided by
+// the number of its triangles; 0 if it is left out. The cells need not be merged.
+std::vector<double> folds_in_cells(const Cut& cut);
+
+// Returns, for each piece, the share of the edges between its regions that lie within cells.
+std::vector<double> crossed_borders(const Cut& cut, const Regions& regions);
 
 // The cost of a piece's charts; less is better.
 struct PieceCost {
