@@ -104,6 +104,19 @@ TEST(Faces, BoundCellsOfLargePartsWithManyTeeth) {
   }
 }
 
+// The fans of this wheel's cells err little, since its walls are low beside wide caps.
+TEST(Faces, BoundCellsOfLargePartsWithFoldsInTheirCells) {
+  const Mesh wheel(low_toothed_wheel());
+  ASSERT_GT(wheel.indices.size(), 3 * 20000u);
+  for (const ChartPreset preset : {ChartPreset::standard, ChartPreset::fast}) {
+    ChartOptions options;
+    options.preset = preset;
+    const Result<ChartSet> set = make_charts(wheel.view(), options, {});
+    ASSERT_TRUE(set.ok());
+    EXPECT_LT(set->charts.size(), 12u);
+  }
+}
+
 TEST(Cells, OfPiecesLeftOutAreNone) {
   const Part part = part_of(together(box(9), geodesic_sphere(12)));
   const std::vector<std::uint8_t> left_out{1, 0};
