@@ -111,12 +111,13 @@ std::vector<PieceCost> chosen_costs(std::span<const Cut> cuts) {
   return least;
 }
 
-void choose(Cut& a, Cut& b, double share) {
+void choose(Cut& a, Cut& b, double share, bool or_shorter) {
   const std::vector<PieceCost> cost_a = piece_costs(a), cost_b = piece_costs(b);
   for (std::size_t k = 0; k < cost_a.size(); ++k) {
     if (a.left_out[k] || b.left_out[k]) continue;
-    const bool fewer = double(cost_b[k].charts) <= share * double(cost_a[k].charts);
-    (fewer && cost_b[k] < cost_a[k] ? a : b).left_out[k] = 1;
+    const bool few = double(cost_b[k].charts) <= share * double(cost_a[k].charts) ||
+                     (or_shorter && cost_b[k].charts == cost_a[k].charts);
+    (few && cost_b[k] < cost_a[k] ? a : b).left_out[k] = 1;
   }
 }
 

@@ -57,8 +57,9 @@ struct PieceCost {
 // Returns the costs of the pieces over all cuts, each of which leaves out what another one takes.
 std::vector<PieceCost> chosen_costs(std::span<const Cut> cuts);
 
-// Leaves out the worse result of pieces that both cuts take. That of the second one is worse if it
-// has more than this share of the first one's charts.
-void choose(Cut& a, Cut& b, double share = 1);
+// Leaves out the worse result of pieces that both cuts take. That of the second one is better if it
+// has at most this share of the first one's charts, or, with `or_shorter`, as many charts and
+// shorter seams.
+void choose(Cut& a, Cut& b, double share, bool or_shorter);
 
 }  // namespace atlas

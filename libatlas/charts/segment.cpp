@@ -63,6 +63,11 @@ constexpr std::uint32_t kFastTrianglesPerCell = 250, kFastCellsOfSmallMesh = 60;
 // charts, a sixth less seam, in the same time).
 constexpr double kSomeFaces = 0.1, kAllFaces = 0.93;
 constexpr std::size_t kFewCharts = 3;
+// The cut by faces is taken if it has at most this share of the other cut's charts, or as many with
+// shorter seams. Both are compared before they are flattened, and cells bound by faces merge less
+// well after that: with 1, 171 CAD parts came out in 3 % more charts and 1 % longer seams, 11 parts
+// in more charts and none in fewer. 0.85 saved 35 more charts, but 5 parts came out in more.
+constexpr double kBetterByFaces = 0.92;
 
 // Where the fans of a piece's cells err by more than kFanError of their area, its cells are grown
 // again within rows of needles, if it has these, and are kept if their fans err by less than
@@ -195,7 +200,8 @@ class Segmenter {
     cut_in_both_ways(finer, cuts);
     if (context_.cancelled()) return;
     for (std::size_t i = 0; i < coarse; ++i) {
-      for (std::size_t j = coarse; j < cuts.size(); ++j) choose(cuts[i], cuts[j], kMuchBetter);
+      for (std::size_t j = coarse; j < cuts.size(); ++j)
+        choose(cuts[i], cuts[j], kMuchBetter, false);
     }
   }
 
@@ -216,7 +222,8 @@ class Segmenter {
     cuts.push_back(grow({topology_, plan, &faces, ways.walled}));
     merge(cuts.back());
     if (context_.cancelled()) return;
-    for (std::size_t i = first; i < walled; ++i) choose(cuts[i], cuts[walled]);
+    for (std::size_t i = first; i < walled; ++i)
+      choose(cuts[i], cuts[walled], kBetterByFaces, true);
   }
 
   // Adds a cut with cells that nothing bounds, and one with cells that rows of needles bound. Each
