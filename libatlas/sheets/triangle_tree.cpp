@@ -1,4 +1,5 @@
 #include "libatlas/sheets/triangle_tree.h"
+#include <algorithm>
 
 #include "libatlas/core/glm_bridge.h"
 

@@ -1,6 +1,7 @@
 // Texel densities are relative: a common factor scales the uvs and changes nothing else.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <vector>
 

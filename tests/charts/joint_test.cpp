@@ -2,6 +2,7 @@
 // fits best.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <random>
 

@@ -1,4 +1,5 @@
 // What atlas-play does with a scene before it draws.
+#include <algorithm>
 #include <cmath>
 
 #include "libatlas/scene/reader.h"
