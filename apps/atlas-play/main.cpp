@@ -69,6 +69,24 @@ Status check_outputs(const CommandLine& line) {
   return {};
 }
 
+// Refuses pictures that would replace a file of the scene. Its textures, such as the pages of a
+// world, are known only when it has been read.
+Status check_files_stay(const CommandLine& line, const ViewScene& scene) {
+  const std::filesystem::path film = recorded_frame(line.play, 0).parent_path();
+  for (const std::filesystem::path& file : scene.files) {
+    if (Status s = check_output(line.play.screenshot, {file}); !s.ok()) return s;
+    const std::filesystem::path name = file.filename();
+    std::error_code error;  // a folder that is not there holds nothing
+    if (lower_extension(name) == ".png" && name.string().starts_with("frame") &&
+        std::filesystem::equivalent(film / name, file, error))
+      return {ErrorCode::bad_option,
+              fmt::format("{}: holds {}, which is read and a recording may replace (give the "
+                          "recording another folder)",
+                          film.string(), name.string())};
+  }
+  return {};
+}
+
 // Names the frames that a longer recording in the same folder has left: programs that read the
 // folder as a film would append them.
 void name_old_frames(const PlayOptions& options, int recorded, Terminal& terminal) {
@@ -107,6 +125,7 @@ Status play(CommandLine& line, Terminal& terminal, const Context& context) {
   look.vertices_hold_colours = line.colours;
   Result<ViewScene> scene = load_view(line.scene, look, context);
   if (!scene.ok()) return scene.status();
+  if (Status s = check_files_stay(line, *scene); !s.ok()) return s;
   scene->metres_per_unit = line.unit;
   // A world is already lit, and its reflectance is not known, so a sun would paint it white.
   const bool without_sun = scene->unlit == Unlit::all && !line.sun_asked;
