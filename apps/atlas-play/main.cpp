@@ -29,6 +29,7 @@ Result<BenchResult> measure(const CommandLine& line, const GlContext& gl, const 
   result.height = line.render.height;
   result.map_resolution = line.render.map_resolution;
   result.interval = line.render.schedule.interval_frames;
+  result.interval_degrees = line.render.schedule.interval_degrees;
   result.pcf = line.render.pcf;
   Result<BenchTimes> times = bench_times(renderer, line.play.light, options, context);
   if (!times.ok()) return times.status();
@@ -111,6 +112,26 @@ Status tell_reach(const CommandLine& line, const Renderer& renderer, Terminal& t
   return {};
 }
 
+// Where frames are drawn. `window` is the context, or null if there is no window.
+struct Screen {
+  std::unique_ptr<GlContext> gl;
+  GlWindow* window = nullptr;
+};
+
+Result<Screen> open_screen(const CommandLine& line) {
+  const ContextOptions wanted{line.debug, line.software};
+  if (!line.in_window()) {
+    auto made = make_headless_context(wanted);
+    if (!made.ok()) return made.status();
+    return Screen{std::move(made.value()), nullptr};
+  }
+  auto made =
+      make_window(wanted, {line.render.width, line.render.height, "atlas-play", line.vsync, true});
+  if (!made.ok()) return made.status();
+  GlWindow* const window = made.value().get();
+  return Screen{std::move(made.value()), window};
+}
+
 Status play(CommandLine& line, Terminal& terminal, const Context& context) {
   const bool headless = !line.in_window();
   // The march method works well with keys up to this far apart; a slow machine would otherwise
@@ -134,20 +155,9 @@ Status play(CommandLine& line, Terminal& terminal, const Context& context) {
   if (!camera.ok()) return camera.status();
   line.play.camera = *camera;
 
-  std::unique_ptr<GlContext> gl;
-  GlWindow* window = nullptr;
-  const ContextOptions wanted{line.debug, line.software};
-  if (headless) {
-    auto made = make_headless_context(wanted);
-    if (!made.ok()) return made.status();
-    gl = std::move(made.value());
-  } else {
-    auto made = make_window(
-        wanted, {line.render.width, line.render.height, "atlas-play", line.vsync, true});
-    if (!made.ok()) return made.status();
-    window = made.value().get();
-    gl = std::move(made.value());
-  }
+  const Result<Screen> screen = open_screen(line);
+  if (!screen.ok()) return screen.status();
+  const auto& [gl, window] = *screen;
   Result<Renderer> renderer = Renderer::make(*scene, line.render);
   if (!renderer.ok()) return renderer.status();
   terminal.line(fmt::format("{} triangles, OpenGL {} on {}", scene->triangle_count(),

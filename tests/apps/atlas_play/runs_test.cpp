@@ -39,6 +39,14 @@ TEST_F(AtlasPlay, TheBenchTellsItsSettings) {
   EXPECT_EQ(errors("--camera '0,3,4;0,9,4.1' --step 4"), 0) << "nothing but sky is seen";
 }
 
+TEST_F(AtlasPlay, TheBenchTellsKeysByDegrees) {
+  const RunResult r =
+      run("roof.obj --software --width 8 --height 8 --map 16 --interval-degrees 4 --bench b "
+          "--no-errors "
+          "--bench-frames 1 --bench-shadings unlit --bench-methods none");
+  EXPECT_TRUE(holds(r.output, "maps 16², keys every 4°, pcf 3")) << r.output << r.errors;
+}
+
 // Eight frames take the light 24 degrees far. Keys are nearer only where that is asked for.
 TEST_F(AtlasPlay, KeysAreNoFartherApartThanAskedFor) {
   const auto maps = [&](const std::string& more) {
