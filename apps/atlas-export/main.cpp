@@ -63,7 +63,7 @@ void name_unread_values(const Scene& scene, app::Terminal& terminal) {
 // they are not part of this world.
 void name_old_pages(const ExportReport& report, bool exr, app::Terminal& terminal) {
   const std::filesystem::path folder = report.target.parent_path();
-  if (report.pages.empty() || report.pages[0].image.empty()) return;
+  if (report.gpu_bytes == 0) return;  // pages without images
   const auto name = [&](std::size_t written, const char* ending, const char* run) {
     const auto page = [&](std::size_t p) {
       return folder / (page_name(report.target, p) + ending);
@@ -71,7 +71,7 @@ void name_old_pages(const ExportReport& report, bool exr, app::Terminal& termina
     const std::vector<std::filesystem::path> old = app::files_there(written, page);
     if (!old.empty()) terminal.line(app::old_pages_text(old, run, "this world"));
   };
-  name(report.pages.size(), ".png", "export with more pages");
+  if (!embeds_images(report.target)) name(report.pages.size(), ".png", "export with more pages");
   name(exr ? report.pages.size() : 0, ".exr", exr ? "export with more pages" : "export with --exr");
 }
 
@@ -222,6 +222,9 @@ bool is_gltf(const std::filesystem::path& path) {
 ReadOptions read_options(const app::ExportCommand& command) {
   ReadOptions read = command.read;
   read.load_textures = !command.options.charts_only;
+  // Light that includes the reflectance needs no texel. But what texture files there are must be
+  // known, since pages must not replace them.
+  read.encoded_textures = command.options.quantity != Quantity::illuminance;
   read.unlit_textures = false;  // without light no page has an image
   if (!command.options.keep_scene) return read;
   // A glTF file that is written again keeps its normals by itself.

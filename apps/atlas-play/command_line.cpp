@@ -108,7 +108,7 @@ void add_shadow_options(CLI::App& app, CommandLine& l) {
       ->default_str("march");
   app.add_option("--map", l.render.map_resolution, "texels a side of a shadow map")
       ->capture_default_str()
-      ->check(within(1, 32768));
+      ->check(within(16, 32768));
   app.add_option("--map-bits", l.render.map_bits, "of a map's depths: 16, 24, or 32 (floats)")
       ->check(one_of({{"16", 16}, {"24", 24}, {"32", 32}}))
       ->capture_default_str();
@@ -244,6 +244,12 @@ void add_bench_options(CLI::App& app, CommandLine& l) {
 // running.
 std::string about_running(const CLI::App& app, const CommandLine& l) {
   if (l.plan && l.quiet) return "--plan with --quiet tells nothing (leave one out)";
+  for (const char* output : {"--screenshot", "--record", "--bench"})
+    if (l.plan && app.count(output) > 0)
+      return fmt::format("--plan draws nothing, so {} would stay empty (leave one out)", output);
+  for (const char* count : {"--frames", "--close-after"})
+    if (!l.bench.empty() && app.count(count) > 0)
+      return fmt::format("{} is not for --bench (give --bench-frames)", count);
   if (l.in_window() && app.count("--frames") > 0)
     return "--frames is for --headless (give that too, or --close-after for a window)";
   if (l.headless && app.count("--close-after") > 0)

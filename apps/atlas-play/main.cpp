@@ -29,6 +29,7 @@ Result<BenchResult> measure(const CommandLine& line, const GlContext& gl, const 
   result.height = line.render.height;
   result.map_resolution = line.render.map_resolution;
   result.interval = line.render.schedule.interval_frames;
+  result.interval_degrees = line.render.schedule.interval_degrees;
   result.pcf = line.render.pcf;
   Result<BenchTimes> times = bench_times(renderer, line.play.light, options, context);
   if (!times.ok()) return times.status();
@@ -69,6 +70,24 @@ Status check_outputs(const CommandLine& line) {
   return {};
 }
 
+// Refuses pictures that would replace a file of the scene. Its textures, such as the pages of a
+// world, are known only when it has been read.
+Status check_files_stay(const CommandLine& line, const ViewScene& scene) {
+  const std::filesystem::path film = recorded_frame(line.play, 0).parent_path();
+  for (const std::filesystem::path& file : scene.files) {
+    if (Status s = check_output(line.play.screenshot, {file}); !s.ok()) return s;
+    const std::filesystem::path name = file.filename();
+    std::error_code error;  // a folder that is not there holds nothing
+    if (lower_extension(name) == ".png" && name.string().starts_with("frame") &&
+        std::filesystem::equivalent(film / name, file, error))
+      return {ErrorCode::bad_option,
+              fmt::format("{}: holds {}, which is read and a recording may replace (give the "
+                          "recording another folder)",
+                          film.string(), name.string())};
+  }
+  return {};
+}
+
 // Names the frames that a longer recording in the same folder has left: programs that read the
 // folder as a film would append them.
 void name_old_frames(const PlayOptions& options, int recorded, Terminal& terminal) {
@@ -93,6 +112,26 @@ Status tell_reach(const CommandLine& line, const Renderer& renderer, Terminal& t
   return {};
 }
 
+// Where frames are drawn. `window` is the context, or null if there is no window.
+struct Screen {
+  std::unique_ptr<GlContext> gl;
+  GlWindow* window = nullptr;
+};
+
+Result<Screen> open_screen(const CommandLine& line) {
+  const ContextOptions wanted{line.debug, line.software};
+  if (!line.in_window()) {
+    auto made = make_headless_context(wanted);
+    if (!made.ok()) return made.status();
+    return Screen{std::move(made.value()), nullptr};
+  }
+  auto made =
+      make_window(wanted, {line.render.width, line.render.height, "atlas-play", line.vsync, true});
+  if (!made.ok()) return made.status();
+  GlWindow* const window = made.value().get();
+  return Screen{std::move(made.value()), window};
+}
+
 Status play(CommandLine& line, Terminal& terminal, const Context& context) {
   const bool headless = !line.in_window();
   // The march method works well with keys up to this far apart; a slow machine would otherwise
@@ -107,6 +146,7 @@ Status play(CommandLine& line, Terminal& terminal, const Context& context) {
   look.vertices_hold_colours = line.colours;
   Result<ViewScene> scene = load_view(line.scene, look, context);
   if (!scene.ok()) return scene.status();
+  if (Status s = check_files_stay(line, *scene); !s.ok()) return s;
   scene->metres_per_unit = line.unit;
   // A world is already lit, and its reflectance is not known, so a sun would paint it white.
   const bool without_sun = scene->unlit == Unlit::all && !line.sun_asked;
@@ -115,20 +155,9 @@ Status play(CommandLine& line, Terminal& terminal, const Context& context) {
   if (!camera.ok()) return camera.status();
   line.play.camera = *camera;
 
-  std::unique_ptr<GlContext> gl;
-  GlWindow* window = nullptr;
-  const ContextOptions wanted{line.debug, line.software};
-  if (headless) {
-    auto made = make_headless_context(wanted);
-    if (!made.ok()) return made.status();
-    gl = std::move(made.value());
-  } else {
-    auto made = make_window(
-        wanted, {line.render.width, line.render.height, "atlas-play", line.vsync, true});
-    if (!made.ok()) return made.status();
-    window = made.value().get();
-    gl = std::move(made.value());
-  }
+  const Result<Screen> screen = open_screen(line);
+  if (!screen.ok()) return screen.status();
+  const auto& [gl, window] = *screen;
   Result<Renderer> renderer = Renderer::make(*scene, line.render);
   if (!renderer.ok()) return renderer.status();
   terminal.line(fmt::format("{} triangles, OpenGL {} on {}", scene->triangle_count(),

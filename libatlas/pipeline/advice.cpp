@@ -234,9 +234,18 @@ std::vector<std::string> advice_on_tone(const ExportReport& report, const Export
   return lines;
 }
 
+// Of textures that stayed encoded, only PNG files have alpha. Their header says so in a bit of the
+// colour type, except for palettes (3), which may have it.
+bool may_have_alpha(const Texture& texture) {
+  constexpr std::size_t kColourType = 25;  // bytes of a PNG file before it
+  if (texture.encoded.empty()) return texture.image.channels % 2 == 0;
+  if (texture.encoded.size() <= kColourType || texture.encoded[0] != 0x89) return false;
+  const int type = texture.encoded[kColourType];
+  return type == 3 || (type & 4) != 0;
+}
+
 bool is_open(const Material& m, const Scene& scene) {
-  const bool holes =
-      m.texture >= 0 && scene.textures[std::size_t(m.texture)].image.channels % 2 == 0;
+  const bool holes = m.texture >= 0 && may_have_alpha(scene.textures[std::size_t(m.texture)]);
   return m.opacity_textured || m.opacity_by_view ||
          (m.alpha_mode != AlphaMode::opaque && (m.opacity < 1 || holes));
 }
@@ -275,10 +284,12 @@ std::vector<std::string> advice_on(const ExportReport& report, const ExportOptio
   const double texels_a_chart =
       report.uv_utilization * page_texels(report) / double(report.charts.size());
   if (report.charts.size() >= kManyCharts && texels_a_chart < kFewTexels &&
-      report.uv_utilization < kLittleUsed)
-    lines.push_back(on_small_charts(report, texels_a_chart));
-  else if (asked > 0 && !coarse && texels_a_chart < kHardlyAny)
+      report.uv_utilization < kLittleUsed) {
+    // At scale 1 all charts have what they asked for. They are small because their light is even.
+    if (report.scale < 1) lines.push_back(on_small_charts(report, texels_a_chart));
+  } else if (asked > 0 && !coarse && texels_a_chart < kHardlyAny) {
     lines.push_back(on_long_texels(report, texels_a_chart));
+  }
   if (coarse && (asked > 0 || !is_faithful(report)))
     lines.push_back(on_coarse_texels(report, options));
   else if (loses_detail(report))

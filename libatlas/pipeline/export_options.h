@@ -60,7 +60,8 @@ struct ExportOptions {
   double threshold = 2.0 / 255;  // of downsizing, in display values, 0..1; 0: no downsizing
   // Downsizing makes no side shorter, texels; 1..256, and at most what gutters leave of a page.
   std::int32_t min_side = 16;
-  // Quantity::colour: ToneOptions::white 0 is 1 rather than measured, so that colours look as they
+  // Textures are sampled, and must then be decoded, only with Quantity::illuminance. With
+  // Quantity::colour, ToneOptions::white 0 is 1 rather than measured, so that colours look as they
   // are in the scene.
   Quantity quantity = Quantity::illuminance;
   // A chart does not continue across a crease at which the light jumps visibly. Not with

@@ -62,7 +62,8 @@ class Export {
   Result<ExportReport> run() {
     const double cpu = own_cpu_seconds(), wall = wall_seconds();
     if (Status s = check_plan(plan_, options_); !s.ok()) return s;
-    if (Status s = plan_.bake ? check_images(scene_) : Status(); !s.ok()) return s;
+    const bool textured = plan_.bake && options_.quantity == Quantity::illuminance;
+    if (Status s = textured ? check_images(scene_) : Status(); !s.ok()) return s;
     if (Status s = check_module(); !s.ok()) return s;
     if (plan_.bake) {
       if (Status s = expose(); !s.ok()) return s;

@@ -97,6 +97,12 @@ std::string budget_text(std::uint32_t pages, std::int32_t side) {
 }
 
 std::string charts_reason(const ChartOptions& charts) {
+  if (charts.keep_uv_charts) {
+    ChartOptions anew = charts;
+    anew.keep_uv_charts = false;
+    return "given charts keep their shape, whatever it stretches; the others: " +
+           charts_reason(anew);
+  }
   if (charts.cone_degrees > 0) {
     const std::string cone =
         fmt::format("normals within {:g}° of a chart's axis", charts.cone_degrees);

@@ -79,6 +79,7 @@ struct BenchResult {
   std::string device = {}, version = {};
   bool software = false;
   int width = 0, height = 0, map_resolution = 0, interval = 0, pcf = 0;
+  double interval_degrees = 0;  // > 0: frames were timed with it, and not with `interval`
   std::uint32_t triangles = 0;
   BenchTimes times = {};
   std::vector<BenchError> errors = {};

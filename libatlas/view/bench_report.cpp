@@ -34,6 +34,12 @@ std::string medians(const Spread& s) {
   return fmt::format("{} | {} | {:.2f}", ms(s.p50), ms(s.p95), spread_ratio(s));
 }
 
+// Names what was between two keys while frames were timed.
+std::string interval_text(const BenchResult& r) {
+  return r.interval_degrees > 0 ? fmt::format("keys every {:g}°", r.interval_degrees)
+                                : fmt::format("k = {}", r.interval);
+}
+
 json milliseconds(const Spread& s) {
   return {{"mean", s.mean * 1e3},
           {"p50", s.p50 * 1e3},
@@ -78,7 +84,8 @@ json summary(const BenchResult& r) {
           {"width", r.width},
           {"height", r.height},
           {"map_resolution", r.map_resolution},
-          {"k", r.interval},
+          {"k", r.interval_degrees > 0 ? json() : json(r.interval)},
+          {"interval_degrees", r.interval_degrees},
           {"pcf", r.pcf},
           {"triangles", r.triangles},
           {"runs", runs},
@@ -223,9 +230,9 @@ Status write_bench(const BenchResult& result, const fs::path& folder) {
 }
 
 std::string bench_table(const BenchResult& r) {
-  std::string s = fmt::format("{} ({}), {} x {}, maps {}², k = {}, pcf {}, {} triangles\n\n",
-                              r.device, r.software ? "software renderer" : "GPU", r.width, r.height,
-                              r.map_resolution, r.interval, r.pcf, r.triangles);
+  std::string s = fmt::format("{} ({}), {} x {}, maps {}², {}, pcf {}, {} triangles\n\n", r.device,
+                              r.software ? "software renderer" : "GPU", r.width, r.height,
+                              r.map_resolution, interval_text(r), r.pcf, r.triangles);
   if (!r.times.runs.empty())
     s += "| shading | shadows | mean fps | wall ms: p50 | p95 | p99 | p99.9 | worst | p95 / p50 | "
          "CPU ms: p50 | p95 | p95 / p50 | GPU ms: p50 | p95 | p95 / p50 | shadow share | "

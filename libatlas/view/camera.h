@@ -26,7 +26,7 @@ std::array<Vec3d, 8> view_corners(const Camera& camera, double aspect, double fa
 Camera camera_for(const Box3& box, const Vec3d& up, double fov_degrees);
 
 // Sets near and far planes that enclose the box as seen from the camera. The near plane is at least
-// a ten-thousandth of the far plane's distance away, also within the box.
+// a millionth of the far plane's distance away, also within the box.
 void fit_planes(Camera& camera, const Box3& box);
 
 // Moves the camera in world units (forward and right along its view, up along its `up`) and turns

@@ -4,6 +4,7 @@
 #include <zlib.h>
 
 #include <algorithm>
+#include <utility>
 #include <vector>
 
 #include "libatlas/core/clock.h"
@@ -76,6 +77,7 @@ Result<ViewScene> load_view(const fs::path& path, const ViewSceneOptions& option
   if (!view.ok())
     return Status{view.status().code(), path.string() + ": " + view.status().message()};
   view->start = loaded->view;
+  view->files = std::move(loaded->files);
   return view;
 }
 

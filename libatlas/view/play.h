@@ -29,7 +29,8 @@ struct PlayOptions {
   double max_step = 2;             // in a window: most degrees per frame, see LightClock
   int frames = 1;                  // headless: how many are drawn
   int close_after = 0;             // in a window: frames until it closes by itself; 0: never
-  // A folder for frame00000.png and so on (recorded_frame()); empty: none, in a window "recording".
+  // A folder for frame00000.png and so on (recorded_frame()). Empty: nothing is recorded; in a
+  // window, its panel can start a recording in "recording".
   std::filesystem::path record = {};
   // PNG file; empty: none. Headless, it gets the last frame; in a window, what F12 takes, and what
   // was last shown before close_after.

@@ -78,6 +78,7 @@ class Player {
     stride_range_ = glm::length(to_glm(b.high) - to_glm(b.low));
     stride_ = stride_range_ / 8;
     speed_ = float(options.degrees_per_second);
+    recording_ = !options.record.empty();
   }
 
   Result<PlaySummary> run(const Context& context) {

@@ -78,8 +78,8 @@ constexpr const char* kWard = R"(
 float specular(vec3 n, vec3 l, vec3 v, float nl) {
   float nv = max(dot(n, v), 1e-3);
   float nh = max(dot(n, normalize(l + v)), 1e-3);
-  float a2 = frame.specular.z * frame.specular.z;
-  float tangent2 = 1.0 / (nh * nh) - 1.0;
+  float a2 = max(frame.specular.z * frame.specular.z, 1e-30);  // 0 would make the quotients NaN
+  float tangent2 = max(1.0 / (nh * nh) - 1.0, 0.0);
   return frame.specular.x * nl * exp(-tangent2 / a2) /
          (12.5663706 * a2 * sqrt(max(nl, 1e-3) * nv));
 }

@@ -81,9 +81,10 @@ Result<ShadowPass> ShadowPass::make(int resolution, int maps, int bits, bool hol
   GLint largest = 0;
   glGetIntegerv(GL_MAX_TEXTURE_SIZE, &largest);
   if (resolution < 16 || resolution > largest)
-    return Status{ErrorCode::bad_option,
-                  fmt::format("shadow map of {} texels a side: the driver takes 16 to {}",
-                              resolution, largest)};
+    return Status{
+        ErrorCode::bad_option,
+        fmt::format("shadow map of {} texels a side: 16 to {} are possible with this driver",
+                    resolution, largest)};
   Result<GlProgram> program = link_program("shadow map", kVertex, kFragment);
   if (!program.ok()) return program.status();
   ShadowPass pass;

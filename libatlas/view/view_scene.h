@@ -5,6 +5,7 @@
 #include <compare>
 #include <cstddef>
 #include <cstdint>
+#include <filesystem>
 #include <optional>
 #include <vector>
 
@@ -64,8 +65,10 @@ struct ViewScene {
   Box3 middle = {};   // of these without the 5 % that lie outermost at each end of each axis
   Vec3d origin = {};  // added to a position, gives the coordinates of the file
   std::optional<FileView> start = {};  // where the file says that a viewer begins
-  double metres_per_unit = 1;          // > 0; used for the height of a visitor's eye
-  double light_scale = 1;              // exposure that puts the 99th percentile of the light at 1
+  // LoadedScene::files, which pictures must not replace. Like `start`, load_view() fills it in.
+  std::vector<std::filesystem::path> files = {};
+  double metres_per_unit = 1;  // > 0; used for the height of a visitor's eye
+  double light_scale = 1;      // exposure that puts the 99th percentile of the light at 1
 
   std::size_t triangle_count() const { return indices.size() / 3; }
   bool textured() const { return !texcoords.empty(); }

@@ -85,8 +85,11 @@ TEST(Advice, ManyPagesNameLargerOnesThatHoldAsMuch) {
 TEST(Advice, PagesOfGuttersAreNamed) {
   ExportReport report = report_of(16000, 8, 1024);
   report.uv_utilization = 0.3;
+  report.scale = 0.5;
   EXPECT_TRUE(
       holds(advice_on(report, {}), "16000 charts have 157 texels each on average, and 70 %"));
+  report.scale = 1;  // they have no more light to show
+  EXPECT_TRUE(advice_on(report, {}).empty());
   report = report_of(16, 8, 1024);  // few large charts in a long scene
   report.uv_utilization = 0.3;
   EXPECT_TRUE(advice_on(report, {}).empty());
@@ -95,6 +98,7 @@ TEST(Advice, PagesOfGuttersAreNamed) {
 TEST(Advice, LimitsThemselvesNeedNone) {
   ExportReport report = report_of(255, 1, 512);
   report.uv_utilization = 0.3;
+  report.scale = 0.5;
   EXPECT_TRUE(advice_on(report, {}).empty());
   report.charts.resize(256);
   EXPECT_TRUE(holds(advice_on(report, {}), "256 charts have 307 texels each on average"));
@@ -110,6 +114,29 @@ TEST(Advice, PagesWithoutLightNeedNone) {
   EXPECT_FALSE(advice_on(report, {}).empty());
   report.gpu_bytes = 0;
   EXPECT_TRUE(advice_on(report, {}).empty());
+}
+
+// Of a texture that is not decoded, the kind of file tells whether it may have holes.
+TEST(Advice, EncodedTexturesMayHaveHoles) {
+  constexpr std::uint8_t kGrey = 0, kColour = 2, kPalette = 3, kGreyAlpha = 4, kColourAlpha = 6;
+  Scene scene;
+  scene.materials = {{.name = "leaf", .texture = 0, .alpha_mode = AlphaMode::mask}};
+  scene.textures.resize(1);
+  const auto is_open = [&](std::vector<std::uint8_t> bytes) {
+    scene.textures[0].encoded = std::move(bytes);
+    return !advice_on_materials(scene, Quantity::luminance).empty();
+  };
+  const auto png = [](std::uint8_t type) {
+    std::vector<std::uint8_t> bytes(40, 0);
+    bytes[0] = 0x89;
+    bytes[25] = type;
+    return bytes;
+  };
+  for (const std::uint8_t type : {kPalette, kGreyAlpha, kColourAlpha})
+    EXPECT_TRUE(is_open(png(type))) << int{type};
+  for (const std::uint8_t type : {kGrey, kColour}) EXPECT_FALSE(is_open(png(type))) << int{type};
+  EXPECT_FALSE(is_open(std::vector<std::uint8_t>(40, 0xff))) << "JPEG";
+  EXPECT_FALSE(is_open({0x89}));
 }
 
 TEST(Advice, TransparencyIsNamed) {

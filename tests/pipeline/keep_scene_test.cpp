@@ -287,7 +287,7 @@ TEST(KeepScene, IsRefusedWhereLightIsBakedAndForVrml) {
   EXPECT_EQ(folder.count(), 1u);
 }
 
-// Textures that were not decoded cannot be used for baking.
+// Textures that were not decoded cannot be used for baking. Luminance includes the reflectance.
 TEST(KeepScene, EncodedTexturesAreNotBaked) {
   const TempFolder folder;
   LoadedScene lit = lit_scene(box(2));
@@ -298,6 +298,8 @@ TEST(KeepScene, EncodedTexturesAreNotBaked) {
   const auto baked = export_world(lit, options, {}, {});
   EXPECT_EQ(baked.status().code(), ErrorCode::bad_input);
   EXPECT_NE(baked.status().message().find("textures[0] has no image"), std::string::npos);
+  options.quantity = Quantity::luminance;
+  EXPECT_TRUE(export_world(lit, options, {}, {}).ok());
 }
 
 // This is the recipe of docs/library.md.

@@ -198,6 +198,17 @@ TEST(Plan, ItsReportDescribesTheScene) {
   EXPECT_DOUBLE_EQ(report.plan.surface_area_m2, 1);
 }
 
+TEST(Plan, GivenChartsHaveNoBound) {
+  const LoadedScene room = lit_room(4);
+  ExportOptions options;
+  options.charts.keep_uv_charts = true;
+  const ExportPlan plan = make_plan(room.scene, options);
+  EXPECT_NE(plan.steps[1].reason.find("given charts keep their shape, whatever it stretches; the "
+                                      "others: stretch at most 1.25"),
+            std::string::npos)
+      << plan.steps[1].reason;
+}
+
 TEST(Plan, NamesWhatASceneDoesNotNeed) {
   LoadedScene dark = lit_room(4);
   dark.scene.illumination.assign(dark.scene.positions.size(), Vec3f{});

@@ -194,6 +194,17 @@ TEST(BenchReport, TablesHaveWholeRows) {
   EXPECT_TRUE(has(bench_table(empty), "(GPU)"));
 }
 
+TEST(BenchReport, KeysByDegreesAreToldAsSuch) {
+  BenchResult r = result(true);
+  r.interval_degrees = 2.5;
+  EXPECT_TRUE(has(bench_table(r), "maps 1024², keys every 2.5°, pcf 3, "));
+  const TempFolder folder;
+  ASSERT_TRUE(write_bench(r, folder.path()).ok());
+  const auto j = nlohmann::json::parse(TempFolder::read(folder / "summary.json"));
+  EXPECT_TRUE(j["k"].is_null());
+  EXPECT_EQ(j.value("interval_degrees", 0.0), 2.5);
+}
+
 // Three digits of a time of any size.
 TEST(BenchReport, ShortTimesKeepTheirDigits) {
   BenchResult r = result(true);

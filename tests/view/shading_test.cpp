@@ -74,6 +74,15 @@ TEST_F(Plane, SpecularTerms) {
   }
 }
 
+// The square of such a roughness is 0 as a float.
+TEST_F(Plane, ASmoothPlaneIsNotBlack) {
+  options_.shading = Shading::lambert;
+  const int dull = middle({1, 2, 0})[1];
+  options_.shading = Shading::ward;
+  options_.roughness = 1e-25;
+  EXPECT_EQ(middle({1, 2, 0})[1], dull);
+}
+
 TEST_F(Plane, ShadowsNeverDarkenTheAmbientTerm) {
   add_box(scene_, {-1, 1, -1}, {1, 1.1f, 1});
   camera_.eye = {3, 0.8, 2.4};

@@ -1,4 +1,5 @@
-// What atlas-export --depfile lists, and that an export ends early without the module for images.
+// What atlas-export --depfile lists, which textures are decoded, and that an export ends early
+// without the module for images.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -47,6 +48,28 @@ TEST_F(AtlasExport, DepfileIsAbsentIfTheExportFails) {
   write("a;b.obj", lit_box(2));
   expect_refusal(fmt::format("'{}/a;b.obj'", dir_.string()), "no dependency file can hold",
                  depfile + " -q");
+}
+
+// Luminance includes the reflectance. A file that is cut short shows whether it is decoded.
+TEST_F(AtlasExport, LuminanceNeedsNoTexelButReplacesNoTexture) {
+  write("scene.obj", kTextured);
+  write("a b.mtl", "newmtl wood\nmap_Kd w_0.png\n");
+  ASSERT_TRUE(write_png(dir_ / "whole.png", Image8(64, 64, 3, 77), {}).ok());
+  const std::string cut = slurp(dir_ / "whole.png").substr(0, 60);
+  write("w_0.png", cut);
+  const auto exported = [&](const std::string& world, const std::string& quantity) {
+    return run(
+        fmt::format("{0}/scene.obj -o {0}/{1} --quantity {2}", dir_.string(), world, quantity));
+  };
+  EXPECT_NE(exported("v.wrl", "illuminance").output.find("textures that cannot be decoded"),
+            std::string::npos);
+  for (const char* quantity : {"luminance", "colour"}) {
+    const RunResult r = exported("v.wrl", quantity);
+    EXPECT_EQ(r.exit_code, 0) << r.output;
+    EXPECT_EQ(r.output.find("textures that cannot be decoded"), std::string::npos) << r.output;
+    EXPECT_NE(exported("w.wrl", quantity).output.find("would overwrite"), std::string::npos);
+    EXPECT_EQ(slurp(dir_ / "w_0.png"), cut);
+  }
 }
 
 // Otherwise it would be noticed only when the first page is written.

@@ -205,6 +205,13 @@ TEST_F(System, PagesOfAnEarlierExportAreNamed) {
       << with;
 }
 
+TEST_F(System, ExrPagesOfAnEarlierExportAreNamedBesideAWorldThatHoldsItsImages) {
+  const std::string command = fmt::format("{} -o {}", scene_, to("w.glb"));
+  EXPECT_EQ(run(command + " --exr").output.find("earlier"), std::string::npos);
+  EXPECT_NE(run(command).output.find(to("w_0.exr") + ": of an earlier export with --exr"),
+            std::string::npos);
+}
+
 TEST_F(System, OnlyPagesThatFollowOnThoseOfTheWorldAreOfAnEarlierExport) {
   folder_.write("w_1.png", "old");
   folder_.write("w_3.png", "none of a row");

@@ -40,7 +40,7 @@ TEST_F(AtlasPlay, WithoutTriangles) {
 TEST_F(AtlasPlay, AbsurdOptions) {
   for (const std::string option :
        {"--width 0",     "--width 1.5", "--fov nan",         "--ambient nan",    "--exposure 0",
-        "--roughness 0", "--map 0",     "--map-bits 8",      "--pcf 2",          "--march-steps 0",
+        "--roughness 0", "--map 15",    "--map-bits 8",      "--pcf 2",          "--march-steps 0",
         "--interval 0",  "--step nan",  "--key-degrees 100", "--shading pink",   "--shadows long",
         "--light-end x", "--up w",      "--frames 0",        "--bench-frames 0", "--bogus",
         "--step -1",     "--speed -1",  "--camera 1,2,3"}) {
@@ -274,11 +274,13 @@ TEST_F(AtlasPlay, AWindowShowsItsPanelAndCloses) {
   const Xvfb server;
   if (!server.runs()) GTEST_SKIP() << "Xvfb is not installed";
   const RunResult r =
-      run("roof.obj --width 160 --height 120 --map 64 --close-after 5 --screenshot w.png --debug",
+      run("roof.obj --width 160 --height 120 --map 64 --close-after 5 --screenshot w.png --debug "
+          "--record film",
           server.environment());
   EXPECT_EQ(r.exit_code, 0) << r.errors;
   EXPECT_NE(r.output.find("5 frames"), std::string::npos) << r.output;
   EXPECT_TRUE(fs::exists(dir_ / "w.png"));
+  EXPECT_TRUE(fs::exists(dir_ / "film/frame00004.png")) << "every frame is recorded";
 }
 
 TEST_F(AtlasPlay, ADisplayThatGoes) {

@@ -39,6 +39,14 @@ TEST_F(AtlasPlay, TheBenchTellsItsSettings) {
   EXPECT_EQ(errors("--camera '0,3,4;0,9,4.1' --step 4"), 0) << "nothing but sky is seen";
 }
 
+TEST_F(AtlasPlay, TheBenchTellsKeysByDegrees) {
+  const RunResult r =
+      run("roof.obj --software --width 8 --height 8 --map 16 --interval-degrees 4 --bench b "
+          "--no-errors "
+          "--bench-frames 1 --bench-shadings unlit --bench-methods none");
+  EXPECT_TRUE(holds(r.output, "maps 16², keys every 4°, pcf 3")) << r.output << r.errors;
+}
+
 // Eight frames take the light 24 degrees far. Keys are nearer only where that is asked for.
 TEST_F(AtlasPlay, KeysAreNoFartherApartThanAskedFor) {
   const auto maps = [&](const std::string& more) {
@@ -79,7 +87,7 @@ TEST_F(AtlasPlay, OutputsReplaceNeitherTheSceneNorAFile) {
         {"--screenshot roof.obj", "roof.obj: the screenshot must end in .png"},
         {"--record roof.obj", "roof.obj: is a file (name a folder"},
         {"--bench roof.obj", "roof.obj: is a file (name a folder"}}) {
-    const RunResult r = run(std::string("roof.obj --frames 2") + kSmall + option);
+    const RunResult r = run(std::string("roof.obj") + kSmall + option);
     EXPECT_EQ(r.exit_code, 2) << option;
     EXPECT_TRUE(holds(r.errors, words)) << r.errors;
     EXPECT_EQ(r.output, "") << "before anything is drawn";
@@ -90,6 +98,40 @@ TEST_F(AtlasPlay, OutputsReplaceNeitherTheSceneNorAFile) {
   EXPECT_EQ(run(std::string("roof.obj -q --screenshot P.PNG --record frames") + kSmall).exit_code,
             0);
   EXPECT_TRUE(fs::exists(dir_ / "P.PNG") && fs::exists(dir_ / "frames/frame00000.png"));
+}
+
+TEST_F(AtlasPlay, OutputsReplaceNoTextureOfTheScene) {
+  fs::create_directories(dir_ / "film");
+  for (const char* name : {"t.png", "film/frame00001.png"})
+    ASSERT_TRUE(write_png(dir_ / name, Image8(4, 4, 3, 128), {}).ok());
+  std::ofstream(dir_ / "t.mtl") << "newmtl a\nmap_Kd t.png\nnewmtl b\nmap_Kd film/frame00001.png\n";
+  std::ofstream(dir_ / "t.obj") << "mtllib t.mtl\nv -2 0 2\nv 2 0 2\nv 0 0 -2\nvt 0 0\nvt 1 0\n"
+                                   "usemtl a\nf 1/1 2/2 3/1\nusemtl b\nf 3/1 2/2 1/1\n";
+  const std::string texture = text_of(dir_ / "t.png");
+  for (const auto& [option, words] :
+       {std::pair("--screenshot t.png", "t.png: would overwrite"),
+        {"--record film", "film: holds frame00001.png, which is read"}}) {
+    const RunResult r = run(std::string("t.obj --frames 2") + kSmall + option);
+    EXPECT_EQ(r.exit_code, 2) << option;
+    EXPECT_TRUE(holds(r.errors, words)) << r.errors;
+    EXPECT_EQ(r.output, "") << "before anything is drawn";
+    EXPECT_EQ(text_of(dir_ / "t.png"), texture);
+    EXPECT_EQ(text_of(dir_ / "film/frame00001.png"), texture);
+  }
+  EXPECT_EQ(run(std::string("t.obj -q --screenshot p.png --record other") + kSmall).exit_code, 0);
+}
+
+TEST_F(AtlasPlay, OptionsThatWouldChangeNothingAreRefused) {
+  for (const auto& [options, words] :
+       {std::pair("--plan --screenshot p.png", "--plan draws nothing, so --screenshot"),
+        {"--plan --record film", "--plan draws nothing, so --record"},
+        {"--plan --bench b", "--plan draws nothing, so --bench"},
+        {"--bench b --frames 3", "--frames is not for --bench (give --bench-frames)"},
+        {"--bench b --close-after 3", "--close-after is not for --bench"}}) {
+    const RunResult r = run(std::string("roof.obj --software ") + options);
+    EXPECT_EQ(r.exit_code, 2) << options;
+    EXPECT_TRUE(holds(r.errors, words)) << r.errors;
+  }
 }
 
 }  // namespace
