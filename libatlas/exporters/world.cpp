@@ -7,7 +7,7 @@
 #include <string_view>
 
 #include "libatlas/core/is_finite.h"
-#include "libatlas/exporters/text_output.h"
+#include "libatlas/exporters/writing/text_output.h"
 #include "libatlas/scene/check_scene.h"
 
 namespace atlas {

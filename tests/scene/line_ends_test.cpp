@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 #include <zlib.h>
 
-#include "libatlas/scene/file_bytes.h"
+#include "libatlas/scene/files/file_bytes.h"
 #include "libatlas/scene/reader.h"
 #include "tests/scene/temp_folder.h"
 

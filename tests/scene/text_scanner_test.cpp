@@ -6,7 +6,7 @@
 #include <random>
 #include <string>
 
-#include "libatlas/scene/text_scanner.h"
+#include "libatlas/scene/files/text_scanner.h"
 
 namespace atlas {
 namespace {
