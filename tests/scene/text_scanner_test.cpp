@@ -28,6 +28,22 @@ TEST(TextScanner, NumbersAgreeWithTheLibrary) {
   }
 }
 
+// A backslash joins lines, but not if it ends a comment.
+TEST(TextScanner, CommentsAreNotContinued) {
+  for (const char* comment : {"# a \\\n", "1 # a \\\n", "g a # C:\\tmp\\\r\n", " \t# \\\n"}) {
+    const std::string text = comment + std::string("next\n");
+    TextScanner scan(text.data(), text.data() + text.size());
+    scan.next_line();
+    EXPECT_EQ(scan.line(), 1u) << comment;
+    EXPECT_EQ(scan.word(), "next") << comment;
+  }
+  const std::string text = "g a#1 \\\nb\nnext\n";
+  TextScanner scan(text.data(), text.data() + text.size());
+  scan.next_line();
+  EXPECT_EQ(scan.line(), 2u);
+  EXPECT_EQ(scan.word(), "next");
+}
+
 TEST(TextScanner, OddNumbers) {
   const auto parse = [](std::string s, double& value) {
     s += '\n';

@@ -106,6 +106,23 @@ TEST(Vrml, TexturesAreSharedAsWell) {
   EXPECT_EQ(loaded.scene.materials[0].name, "a.png");
 }
 
+// Urls are percent-encoded. Names that are not, although they have percent signs, are found, too.
+// Of several urls, one is taken that is a file here.
+TEST(Vrml, UrlsAreDecodedAndTried) {
+  const TempFolder folder;
+  folder.write("my a.png", "no image");
+  folder.write("my%20b.png", "no image");
+  for (const char* url :
+       {R"("my%20a.png")", R"("my a.png")", R"("my%20b.png")", R"(["gone.png" "my a.png"])",
+        R"(["http://a.org/my%20a.png", "gone.png", "my%20a.png"])"}) {
+    const auto loaded = load(folder.write(
+        "t.wrl", "#VRML V2.0 utf8\n" + shape(0, "Appearance { texture ImageTexture { url " +
+                                                    std::string(url) + " } }")));
+    EXPECT_EQ(loaded.defects.count(DefectKind::texture_missing), 0u) << url;
+    EXPECT_EQ(loaded.defects.count(DefectKind::texture_unreadable), 1u) << url;
+  }
+}
+
 // The values are those of the formula in the standard, worked out by hand.
 TEST(Vrml, TextureTransformsMoveCoordinates) {
   const TempFolder folder;

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <map>
 #include <set>
+#include <string>
 #include <tuple>
 #include <utility>
 
@@ -49,6 +50,7 @@ json look_of(const Material& material) {
                                   std::clamp(d.z, 0.f, 1.f), material.opacity};
   json entry = {{"pbrMetallicRoughness", std::move(surface)}};
   if (keeps_emission(material)) add_emission(material, entry);
+  if (material.unlit) entry["extensions"]["KHR_materials_unlit"] = json::object();
   if (!material.name.empty()) entry["name"] = material.name;
   if (material.double_sided) entry["doubleSided"] = true;
   if (material.alpha_mode == AlphaMode::blend) entry["alphaMode"] = "BLEND";
@@ -79,8 +81,10 @@ class MaterialWriter {
       if (!number.ok()) return number.status();
       entry["pbrMetallicRoughness"]["baseColorTexture"] = {{"index", *number}};
     }
-    if (entry.contains("extensions"))
-      document_.json["extensionsUsed"] = json::array({"KHR_materials_emissive_strength"});
+    if (const auto list = entry.find("extensions"); list != entry.end()) {
+      for (const auto& [name, extension] : list->items()) extensions_.insert(name);
+      document_.json["extensionsUsed"] = extensions_;
+    }
     document_.json["materials"].push_back(std::move(entry));
     return at->second;
   }
@@ -123,6 +127,7 @@ class MaterialWriter {
   const Scene& scene_;
   GltfDocument& document_;
   GltfTextures& files_;
+  std::set<std::string> extensions_;                                 // of all materials
   std::map<std::pair<std::uint32_t, bool>, std::size_t> materials_;  // with or without texture
   std::map<std::tuple<std::int32_t, TextureWrap, TextureWrap>, std::size_t> textures_;
   std::map<std::size_t, std::size_t> images_;

@@ -18,6 +18,16 @@ constexpr std::size_t kPiecesAtOnce = 16;  // bounds memory to a few megabytes
 
 }  // namespace
 
+std::string encode_uri(const std::string& name) {
+  std::string result;
+  for (const char c : name) {
+    const bool plain = c >= '!' && c <= '~' &&
+                       std::string_view("\"\\%#:?<>^`{|}").find(c) == std::string_view::npos;
+    result += plain ? std::string(1, c) : fmt::format("%{:02X}", static_cast<unsigned char>(c));
+  }
+  return result;
+}
+
 TextFile::TextFile(const std::filesystem::path& temporary, const std::filesystem::path& target,
                    bool gzip)
     : target_(target) {

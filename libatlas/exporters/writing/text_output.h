@@ -15,7 +15,8 @@
 namespace atlas {
 
 // Returns a relative reference in plain ASCII without blanks, because some readers split lists at
-// blanks and some fail on UTF-8. Names from safe_file_name() stay unchanged.
+// blanks and some fail on UTF-8, and without a colon, before which they see a scheme. Names from
+// safe_file_name() stay unchanged.
 std::string encode_uri(const std::string& name);
 
 // A file, plain or gzipped, that remembers its first error.

@@ -32,6 +32,7 @@ void count_mtl_losses(const Material& material, Losses& losses) {
     const std::string keyword = line.substr(0, line.find_first_of(" \t"));
     if (keyword == "map_Kd" || is_opacity_line(line)) continue;
     if (keyword == "Ke" && !material.emission_textured) continue;
+    if (keyword == "illum" && material.unlit) continue;
     losses.add("lines of the MTL: " + keyword);
   }
 }

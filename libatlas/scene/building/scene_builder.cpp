@@ -313,7 +313,7 @@ Result<LoadedScene> SceneBuilder::finish(const ReadOptions& options, const Conte
   scene.indices = std::move(indices_);
   place_normals(scene);
   scene.source = std::move(source);
-  if (any_texcoord_) scene.texcoord_indices = std::move(texcoord_indices_);
+  scene.texcoord_indices = std::move(texcoord_indices_);
   scene.texcoords = std::move(texcoords);
   scene.triangle_material = std::move(triangle_material_);
   scene.triangle_object = std::move(triangle_object_);

@@ -178,18 +178,24 @@ class SceneBuilder {
 
   void add_triangle(const FaceCorners& face, std::array<std::uint32_t, 3> corners) {
     const auto [vertices, uvs, face_normals] = face;
-    for (const std::uint32_t c : corners) {
+    add_attributes(uvs, corners, texcoord_indices_);
+    if (wants_normals) add_attributes(face_normals, corners, normal_indices_);
+    for (const std::uint32_t c : corners)
       indices_.push_back(static_cast<std::uint32_t>(vertices[c]));
-      texcoord_indices_.push_back(uvs.empty() ? Scene::kNoTexcoord
-                                              : static_cast<std::uint32_t>(uvs[c]));
-      if (wants_normals)
-        normal_indices_.push_back(
-            face_normals.empty() ? Scene::kNoNormal : static_cast<std::uint32_t>(face_normals[c]));
-    }
-    any_texcoord_ |= !uvs.empty();
-    any_normal_ |= !face_normals.empty();
     triangle_material_.push_back(material);
     triangle_object_.push_back(object);
+  }
+
+  // Adds the indices of a triangle's attributes, `given` or none. The list stays empty until a
+  // triangle has some, as those of many large files never do.
+  void add_attributes(std::span<const std::int64_t> given,
+                      const std::array<std::uint32_t, 3>& corners,
+                      std::vector<std::uint32_t>& list) const {
+    static_assert(Scene::kNoTexcoord == Scene::kNoNormal);
+    if (given.empty() && list.empty()) return;
+    list.resize(indices_.size(), Scene::kNoTexcoord);
+    for (const std::uint32_t c : corners)
+      list.push_back(given.empty() ? Scene::kNoTexcoord : static_cast<std::uint32_t>(given[c]));
   }
 
   void sanitise_values();
@@ -206,7 +212,8 @@ class SceneBuilder {
   bool keep_encoded(RawTexture& raw, Scene& scene) const;
   Result<TextureImage> load_texture(const RawTexture& raw) const;
 
-  bool all_usable_ = true, any_texcoord_ = false, any_normal_ = false;
+  bool all_usable_ = true;
+  // The latter two are empty if no triangle has any, else as long as the first.
   std::vector<std::uint32_t> indices_, texcoord_indices_, normal_indices_;
   std::vector<std::uint32_t> triangle_material_, triangle_object_;
   std::vector<Vec3d> corners_;

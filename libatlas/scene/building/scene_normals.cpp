@@ -27,7 +27,7 @@ bool make_unit(Vec3f& normal) {
 // a normal black. Therefore each such normal becomes the area-weighted mean normal of its
 // triangles.
 void SceneBuilder::place_normals(Scene& scene) {
-  if (!any_normal_) return;
+  if (normal_indices_.empty()) return;
   std::unordered_map<std::uint32_t, glm::dvec3> unusable;
   for (std::size_t i = 0; i < normals.size(); ++i) {
     if (make_unit(normals[i])) continue;

@@ -90,9 +90,10 @@ Result<std::string> read_text_or_gzip(const fs::path& path, std::size_t most) {
   if (!bytes.ok()) return bytes.status();
   std::string text;
   if (!bytes->text().starts_with("\x1f\x8b")) {
-    text = bytes->text();
-    turn_returns(text.data(), text.data() + text.size());
-    return text + '\n';
+    turn_returns(bytes->data.get(), bytes->data.get() + bytes->size);
+    const std::size_t mark = begins_with_mark(*bytes) ? kMark.size() : 0;
+    text.assign(bytes->begin() + mark, bytes->size + 1 - mark);  // with its newline
+    return text;
   }
   gzFile file = gzopen(path.c_str(), "rb");
   if (!file) return Status(ErrorCode::io, path.string() + ": cannot be read");
@@ -117,8 +118,10 @@ Result<std::string> read_text_or_gzip(const fs::path& path, std::size_t most) {
         ErrorCode::bad_input,
         fmt::format("{}: damaged or cut short gzip data (copy the file again)", path.string()));
   }
+  if (text.starts_with(kMark)) text.erase(0, kMark.size());
   turn_returns(text.data(), text.data() + text.size());
-  return text + '\n';
+  text += '\n';
+  return text;
 }
 
 }  // namespace atlas

@@ -49,12 +49,13 @@ class TextScanner {
 
   // Goes to the start of the next line; a comment is not continued by a backslash.
   void next_line() {
-    if (at_ < end_ && *at_ == '#') return next_line_after_comment();
+    bool comment = at_ < end_ && *at_ == '#';
     while (at_ < end_) {
       const char c = *at_++;
+      comment |= c == '#' && at_ - 1 > begin_of_line_ && is_space(at_[-2]);
       if (c != '\n') continue;
       ++line_;
-      if (!joins_) break;
+      if (!joins_ || comment) break;
       const char* before = at_ - 2;
       if (before >= begin_of_line_ && *before == '\r') --before;
       if (before < begin_of_line_ || *before != '\\') break;
@@ -71,14 +72,15 @@ class TextScanner {
   }
 
   // Returns the rest of the line without blanks at either end, and without a comment after a blank.
+  // Stays before it.
   std::string_view rest() { return without_comment(rest_with_comment()); }
 
   // Returns the same, but with text after " #", which may be a comment or part of a file's name.
   std::string_view rest_with_comment() {
     skip_blanks();
-    const char* start = at_;
-    while (at_ < end_ && *at_ != '\n') ++at_;
-    return {start, std::size_t(trimmed(start, at_) - start)};
+    const char* stop = at_;
+    while (stop < end_ && *stop != '\n') ++stop;
+    return {at_, std::size_t(trimmed(at_, stop) - at_)};
   }
 
   // Returns the text before the first '#' that follows a blank.
@@ -132,15 +134,6 @@ class TextScanner {
   }
   bool continues(const char* p) const {
     return joins_ && *p == '\\' && p + 1 < end_ && (p[1] == '\n' || (p[1] == '\r' && p[2] == '\n'));
-  }
-
-  void next_line_after_comment() {
-    while (at_ < end_) {
-      if (*at_++ != '\n') continue;
-      ++line_;
-      break;
-    }
-    begin_of_line_ = at_;
   }
 
   const char* at_;

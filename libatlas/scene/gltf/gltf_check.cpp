@@ -16,11 +16,26 @@ namespace {
 using nlohmann::json;
 
 // Extensions that are read, or that do not change the shapes of a scene.
-constexpr std::string_view kUnderstood[] = {
-    "KHR_mesh_quantization",   "KHR_texture_transform",     "KHR_lights_punctual",
-    "KHR_technique_webgl",     "KHR_techniques_webgl",      "EXT_mesh_gpu_instancing",
-    "EXT_texture_webp",        "EXT_meshopt_compression",   "KHR_node_visibility",
-    "KHR_meshopt_compression", "KHR_draco_mesh_compression"};
+constexpr std::string_view kUnderstood[] = {"KHR_mesh_quantization",
+                                            "KHR_texture_transform",
+                                            "KHR_lights_punctual",
+                                            "KHR_technique_webgl",
+                                            "KHR_techniques_webgl",
+                                            "EXT_mesh_gpu_instancing",
+                                            "EXT_texture_webp",
+                                            "EXT_meshopt_compression",
+                                            "KHR_node_visibility",
+                                            "KHR_meshopt_compression",
+                                            "KHR_draco_mesh_compression",
+                                            "KHR_animation_pointer",
+                                            "KHR_xmp_json_ld",
+                                            "KHR_node_selectability",
+                                            "KHR_node_hoverability",
+                                            "EXT_mesh_features",
+                                            "EXT_instance_features",
+                                            "EXT_structural_metadata",
+                                            "EXT_lights_image_based",
+                                            "EXT_lights_ies"};
 // Extensions that only say in which format the images of textures are.
 constexpr std::string_view kTextures[] = {"KHR_texture_basisu", "KHR_texture_ktx",
                                           "EXT_texture_avif", "MSFT_texture_dds"};

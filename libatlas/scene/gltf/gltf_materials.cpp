@@ -4,30 +4,14 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
 
+#include "libatlas/scene/files/decode_uri.h"
 #include "libatlas/scene/files/finite_float.h"
 
 namespace atlas {
 namespace fs = std::filesystem;
 namespace {
-
-// File names in URIs are percent-encoded.
-std::string decode_uri(const std::string& uri) {
-  std::string name;
-  for (std::size_t i = 0; i < uri.size(); ++i) {
-    unsigned code = 0;  // a sign is no digit
-    if (uri[i] == '%' && i + 2 < uri.size() &&
-        std::from_chars(&uri[i + 1], &uri[i + 1] + 2, code, 16).ptr == &uri[i + 1] + 2) {
-      name += static_cast<char>(code);
-      i += 2;
-    } else {
-      name += uri[i];
-    }
-  }
-  return name;
-}
 
 Status add_images(const tinygltf::Model& model, SceneBuilder& builder) {
   const fs::path folder = fs::path(builder.file).parent_path();

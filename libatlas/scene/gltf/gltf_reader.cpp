@@ -347,11 +347,12 @@ class GltfParser {
     std::size_t triangles = 0;
     for (const Primitive& p : primitives_) triangles += p.corners.size() / 3;
     builder_.reserve_triangles(triangles, !builder_.texcoords.empty());
-    for (const Primitive& p : primitives_) {
+    for (Primitive& p : primitives_) {
       builder_.material = p.material;
       builder_.object = p.object;
       const std::size_t first = builder_.triangle_count();
       for (std::size_t t = 0; t < p.corners.size() / 3; ++t) add_face(p, t);
+      std::vector<std::uint32_t>().swap(p.corners);
       if (builder_.source) {  // each object has one place
         builder_.source->places[p.object].primitives.push_back(
             {p.number, p.vertices.first, p.vertices.count, first, builder_.triangle_count() - first,

@@ -49,7 +49,9 @@ void turn_line_ends(FileBytes& bytes) {
 class HeaderParser {
  public:
   HeaderParser(const FileBytes& bytes, const std::string& file)
-      : bytes_(bytes), file_(file), scan_(bytes.begin(), bytes.end()) {}
+      : bytes_(bytes),
+        file_(file),
+        scan_(bytes.begin(), bytes.end(), TextScanner::Lines::never_joined) {}
 
   Result<PlyHeader> run() {
     if (scan_.word() != "ply") return malformed("a PLY file begins with the line 'ply'");
@@ -69,7 +71,8 @@ class HeaderParser {
       } else if (keyword == "property") {
         status = parse_property();
       } else if (keyword == "comment") {
-        if (scan_.word() == "TextureFile") header_.texture_files.emplace_back(scan_.rest());
+        if (scan_.word() == "TextureFile")
+          header_.texture_files.emplace_back(scan_.rest_with_comment());
       } else if (!carries_nothing(keyword)) {
         status =
             malformed(fmt::format("unknown keyword '{}' in the header", keyword.substr(0, 40)));

@@ -19,7 +19,7 @@ class PlyNumbers {
       : format_(header.format),
         at_(bytes.begin() + header.bytes),
         end_(bytes.end()),
-        scan_(at_, end_),
+        scan_(at_, end_, TextScanner::Lines::never_joined),
         first_line_(header.lines) {}
 
   std::size_t bytes_left() const {

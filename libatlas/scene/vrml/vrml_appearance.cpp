@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "libatlas/scene/files/decode_uri.h"
 #include "libatlas/scene/files/finite_float.h"
 
 namespace atlas {
@@ -76,20 +77,36 @@ class AppearanceParser {
       scan_.fields([&](std::string_view field) {
         if (field == "repeatS") return material_.wrap_u = wrap(), true;
         if (field == "repeatT") return material_.wrap_v = wrap(), true;
-        if (field != "url") return false;
-        std::string_view token = scan_.next();
-        const bool many = token == "[";
-        if (many) token = scan_.next();
-        if (many && token == "]") return true;
-        if (token.size() < 2 || token[0] != '"') scan_.fail("a url in quotes expected");
-        const fs::path folder = fs::path(builder_.file).parent_path();
-        image_ = token.substr(1, token.size() - 2);
-        if (!image_.empty())
-          material_.texture = builder_.texture_of(folder / image_, builder_.file);
-        while (many && token != "]" && !token.empty()) token = scan_.next();
-        return true;
+        if (field == "url") return image(), true;
+        return false;
       });
     });
+  }
+
+  static bool exists(const fs::path& path) {
+    std::error_code ignored;  // a path that cannot be examined does not exist
+    return fs::exists(path, ignored);
+  }
+
+  // Takes the first of the urls that is a file here, or the first of all.
+  void image() {
+    fs::path file;
+    scan_.nodes([&](std::string_view token) {
+      if (token.size() < 2 || token[0] != '"') scan_.fail("a url in quotes expected");
+      const std::string url(token.substr(1, token.size() - 2));
+      const fs::path found = url.empty() ? fs::path() : file_of(url);
+      if (!file.empty() && (exists(file) || !exists(found))) return;
+      file = found;
+      image_ = url;
+    });
+    if (!file.empty()) material_.texture = builder_.texture_of(file, builder_.file);
+  }
+
+  // Urls are percent-encoded, but some programs write file names as they are.
+  fs::path file_of(const std::string& url) const {
+    const fs::path folder = fs::path(builder_.file).parent_path();
+    const fs::path plain = folder / url;
+    return exists(plain) ? plain : folder / decode_uri(url);
   }
 
   TextureWrap wrap() { return scan_.next() == "FALSE" ? TextureWrap::clamp : TextureWrap::repeat; }

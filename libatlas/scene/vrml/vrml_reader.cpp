@@ -25,7 +25,7 @@ constexpr int kMaxDepth = 200;  // of nested nodes
 struct Shape {
   std::vector<Vec3d> points;
   std::vector<Vec2f> uvs;
-  std::vector<double> corners, uv_corners;  // indices, with a -1 after each face
+  std::vector<std::int32_t> corners, uv_corners;  // indices, with a -1 after each face
   std::uint32_t material = 0;
   bool clockwise = false;  // the order of a face's corners, seen from its front
   // Whether the file says so itself. TRUE is also the default, but many files do not say it of
@@ -253,8 +253,8 @@ class VrmlParser : VrmlScanner {
 
   void face_set(Shape& shape) {
     fields([&](std::string_view name) {
-      if (name == "coordIndex") return shape.corners = list(1), true;
-      if (name == "texCoordIndex") return shape.uv_corners = list(1), true;
+      if (name == "coordIndex") return shape.corners = indices(), true;
+      if (name == "texCoordIndex") return shape.uv_corners = indices(), true;
       if (name == "ccw") return shape.clockwise = next() == "FALSE", true;
       if (name == "solid") return shape.solid = next() == "TRUE", true;
       if (name != "coord" && name != "texCoord") return false;
@@ -283,7 +283,10 @@ class VrmlParser : VrmlScanner {
     if (auto& view = builder_.view) view->position = from_glm(origin_ + to_glm(view->position));
     builder_.check_positions(
         [&](std::size_t i) { return fmt::format("{}: vertex {}", builder_.file, i); });
-    for (std::size_t i = 0; i < shapes_.size(); ++i) add_faces(shapes_[i], i);
+    for (std::size_t i = 0; i < shapes_.size(); ++i) {
+      add_faces(shapes_[i], i);
+      shapes_[i] = {};
+    }
   }
 
   void add_faces(const Shape& shape, std::size_t number) {
@@ -300,7 +303,7 @@ class VrmlParser : VrmlScanner {
         // An index beyond its own list must not reach into the next shape's.
         const std::size_t points = base.points(builder_, bases_, number);
         vertices.push_back(index(shape.corners[k], points, base.position));
-        const double uv = textured && k < own.size() ? own[k] : -2;
+        const std::int32_t uv = textured && k < own.size() ? own[k] : kNoIndex;
         uvs.push_back(index(uv, shape.uvs.size(), base.texcoord));
         continue;
       }
@@ -318,10 +321,8 @@ class VrmlParser : VrmlScanner {
     }
   }
 
-  static std::int64_t index(double value, std::size_t count, std::size_t base) {
-    return value >= 0 && value < double(count)
-               ? static_cast<std::int64_t>(value) + std::int64_t(base)
-               : -1;
+  static std::int64_t index(std::int32_t value, std::size_t count, std::size_t base) {
+    return value >= 0 && std::size_t(value) < count ? value + std::int64_t(base) : -1;
   }
 
   struct Base {

@@ -83,14 +83,25 @@ bool VrmlScanner::number(double& value) {
 
 std::vector<double> VrmlScanner::list(std::size_t width) {
   std::vector<double> values;
-  expect("[");
-  double value;
-  while (number(value)) values.push_back(value);
+  numbers([&](double value) { values.push_back(value); });
+  if (values.size() % width != 0) fail(fmt::format("a list of rows of {} with an odd end", width));
+  return values;
+}
+
+std::vector<std::int32_t> VrmlScanner::indices() {
+  constexpr std::int32_t kMost = std::numeric_limits<std::int32_t>::max();
+  std::vector<std::int32_t> values;
+  numbers([&](double value) {
+    const bool usable = value == -1 || (value >= 0 && value <= kMost);
+    values.push_back(usable ? static_cast<std::int32_t>(value) : kNoIndex);
+  });
+  return values;
+}
+
+void VrmlScanner::end_numbers() {
   if (peek() != "]") fail(fmt::format("'{}' is not a number", start_of(peek())));
   expect("]");
-  if (values.size() % width != 0) fail(fmt::format("a list of rows of {} with an odd end", width));
   if (context_.cancelled()) throw MalformedVrml();
-  return values;
 }
 
 glm::dvec4 VrmlScanner::row(int width) {

@@ -3,7 +3,9 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <glm/vec4.hpp>
+#include <limits>
 #include <map>
 #include <string>
 #include <string_view>
@@ -41,6 +43,9 @@ class VrmlScanner {
 
   // Reads `[ numbers ]`, whose count must be a multiple of `width`.
   std::vector<double> list(std::size_t width);
+  // Reads `[ indices ]`. What is no index of a list becomes kNoIndex.
+  std::vector<std::int32_t> indices();
+  static constexpr std::int32_t kNoIndex = std::numeric_limits<std::int32_t>::min();
   glm::dvec4 row(int width);
 
   // Calls field(name) for each field up to the closing bracket. If it returns false, the field's
@@ -53,7 +58,8 @@ class VrmlScanner {
       if (!field(token)) skip_value();
     }
   }
-  // Calls each(first token) for each node of a field's value: one node, or several in brackets.
+  // Calls each(first token) for each node or string of a field's value: one, or several in
+  // brackets.
   template <class Each>
   void nodes(const Each& each) {
     std::string_view token = next();
@@ -96,6 +102,15 @@ class VrmlScanner {
   void check_field(std::string_view token);
   void skip_value();
   bool number(double& value);
+  // Reads `[ numbers ]`, and calls add(number) for each.
+  template <class Add>
+  void numbers(const Add& add) {
+    expect("[");
+    double value;
+    while (number(value)) add(value);
+    end_numbers();
+  }
+  void end_numbers();
   // Returns the type of the node that begins with `token`, and the name that DEF gives it.
   std::string_view type_of(std::string_view token, std::string_view& name);
   struct Definition {
