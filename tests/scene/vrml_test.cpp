@@ -106,6 +106,23 @@ TEST(Vrml, TexturesAreSharedAsWell) {
   EXPECT_EQ(loaded.scene.materials[0].name, "a.png");
 }
 
+// The box is 1 wide, 4 deep and 2 high: u runs along z, and v along y. Points that no face uses are
+// not part of it.
+TEST(Vrml, TexturesWithoutCoordinatesAreMappedByTheBox) {
+  const TempFolder folder;
+  const auto shape = [](const std::string& fields) {
+    return "Shape { appearance Appearance { " + fields +
+           " } geometry IndexedFaceSet { coord Coordinate { point [ 1 1 1, 2 3 1, 1 1 5, 9 9 9 ] } "
+           "coordIndex [ 0 1 2 ] } }";
+  };
+  const Scene scene = scene_of(folder, shape("texture ImageTexture { url \"a.png\" }"));
+  ASSERT_EQ(scene.texcoord_indices.size(), 3u);
+  std::vector<Vec2f> uvs;
+  for (const std::uint32_t i : scene.texcoord_indices) uvs.push_back(scene.texcoords[i]);
+  EXPECT_EQ(uvs, (std::vector<Vec2f>{{0, 0}, {0, 0.5f}, {1, 0}}));
+  EXPECT_TRUE(scene_of(folder, shape("")).texcoord_indices.empty());
+}
+
 // Urls are percent-encoded. Names that are not, although they have percent signs, are found, too.
 // Of several urls, one is taken that is a file here.
 TEST(Vrml, UrlsAreDecodedAndTried) {
@@ -317,6 +334,22 @@ TEST(Vrml, RandomDamageNeverCrashes) {
     ASSERT_TRUE(test::sound(loaded->scene)) << bytes;
   }
   EXPECT_GT(read_well, 300);
+}
+
+// What moves is read as it is at rest. Routes may stand wherever nodes and fields may.
+TEST(Vrml, RoutesAreSkipped) {
+  const TempFolder folder;
+  const auto loaded =
+      read(folder,
+           "DEF clock TimeSensor { loop TRUE }\nDEF way PositionInterpolator { key [ 0 1 ] }\n"
+           "DEF it Transform { translation 5 0 0\nROUTE way.value TO it.translation\nchildren [ " +
+               shape(0) +
+               "] }\nGroup { bboxSize 1 1 1 ROUTE clock.a TO way.b }\n"
+               "ROUTE clock.fraction_changed TO way.set_fraction\n" +
+               shape(2));
+  ASSERT_TRUE(loaded.ok()) << loaded.status().message();
+  EXPECT_EQ(places(loaded->scene), (Places{5, 2}));
+  EXPECT_EQ(loaded->defects.count(DefectKind::element_ignored), 1u);
 }
 
 TEST(Vrml, WhatIsNotReadIsNamedWithItsLine) {

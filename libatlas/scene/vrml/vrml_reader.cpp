@@ -3,11 +3,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <glm/gtc/quaternion.hpp>
 #include <glm/mat4x4.hpp>
 #include <map>
 #include <tuple>
 
+#include "libatlas/core/bounds.h"
 #include "libatlas/core/glm_bridge.h"
 #include "libatlas/scene/building/formats.h"
 #include "libatlas/scene/files/file_bytes.h"
@@ -38,6 +40,26 @@ glm::dmat4 rotation(const glm::dvec4& axis_and_angle) {
   const double length = glm::length(axis);
   return length > 0 ? glm::mat4_cast(glm::angleAxis(axis_and_angle.w, axis / length))
                     : glm::dmat4(1);
+}
+
+// Gives a shape without texture coordinates those of the standard: the longest side of its box runs
+// from u = 0 to 1, and the next longest along v in the same scale. Of equal sides, x comes before y
+// and y before z.
+void add_default_uvs(Shape& shape) {
+  Bounds<glm::dvec3> box;
+  for (const std::int32_t i : shape.corners)
+    if (i >= 0 && std::size_t(i) < shape.points.size() && usable_position(shape.points[i]))
+      box.add(to_glm(shape.points[i]));
+  const glm::dvec3 size = box.size();
+  std::array<int, 3> axes{0, 1, 2};
+  std::stable_sort(axes.begin(), axes.end(), [&](int a, int b) { return size[a] > size[b]; });
+  const double longest = size[axes[0]];
+  if (!(longest > 0)) return;
+  for (const Vec3d& point : shape.points) {
+    const glm::dvec3 from_low = (to_glm(point) - box.low) / longest;
+    shape.uvs.push_back({float(from_low[axes[0]]), float(from_low[axes[1]])});
+  }
+  shape.uv_corners.clear();
 }
 
 bool is_group(std::string_view type) {
@@ -91,9 +113,8 @@ class VrmlParser : VrmlScanner {
 
   void node(std::string_view token, const glm::dmat4& matrix, int depth) {
     if (depth > kMaxDepth) fail("nodes are nested too deeply");
-    if (token == "ROUTE" || token == "PROTO" || token == "EXTERNPROTO") {
-      fail(fmt::format("{} is not supported", token));
-    }
+    if (token == "ROUTE") return ignored(token), skip_route();  // the world at rest is read
+    if (token == "PROTO" || token == "EXTERNPROTO") fail(fmt::format("{} is not supported", token));
     read_node(token, [&](std::string_view type, std::string_view) {
       if (type == "Shape") return shape(matrix);
       if (is_group(type)) return group(matrix, depth);
@@ -222,6 +243,7 @@ class VrmlParser : VrmlScanner {
       return true;
     });
     if (!has_faces) return;
+    if (material.texture >= 0 && result.uvs.empty()) add_default_uvs(result);
     material.double_sided = !result.solid;
     result.material = material_of(std::move(material));
     const std::size_t base = builder_.positions.size();

@@ -135,6 +135,12 @@ void VrmlScanner::skip_node(std::string_view token) {
   skip_brackets();
 }
 
+void VrmlScanner::skip_route() {
+  next();
+  expect("TO");
+  next();
+}
+
 std::string_view VrmlScanner::type_of(std::string_view token, std::string_view& name) {
   if (token == "DEF") {
     name = next();
@@ -207,7 +213,8 @@ void VrmlScanner::count_repeated(double bytes) {
 }
 
 void VrmlScanner::skip_value() {
-  for (std::string_view token = peek(); token != "}" && !is_field(token); token = peek()) {
+  for (std::string_view token = peek(); token != "}" && token != "ROUTE" && !is_field(token);
+       token = peek()) {
     if (token.empty()) fail("the file ends inside a node");
     const bool names = token == "DEF" || token == "USE";
     next();

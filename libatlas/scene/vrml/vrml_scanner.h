@@ -54,6 +54,10 @@ class VrmlScanner {
   void fields(const Field& field) {
     expect("{");
     for (std::string_view token = next(); token != "}"; token = next()) {
+      if (token == "ROUTE") {
+        skip_route();
+        continue;
+      }
       check_field(token);
       if (!field(token)) skip_value();
     }
@@ -88,6 +92,8 @@ class VrmlScanner {
     at_ = after;
   }
   void skip_node(std::string_view token);
+  // Skips `NODE.eventOut TO NODE.eventIn` after ROUTE.
+  void skip_route();
   // Skips from after an opening bracket to after its closing bracket.
   void skip_brackets();
 
