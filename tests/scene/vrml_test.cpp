@@ -106,6 +106,21 @@ TEST(Vrml, TexturesAreSharedAsWell) {
   EXPECT_EQ(loaded.scene.materials[0].name, "a.png");
 }
 
+TEST(Vrml, TexturesThatAreNoFilesLeaveThePlainColour) {
+  const TempFolder folder;
+  const auto loaded =
+      read(folder, shape(0,
+                         "Appearance { texture PixelTexture { image 1 1 3 0xff0000 } material "
+                         "Material { diffuseColor 1 0 0 } }") +
+                       shape(1, "Appearance { texture MovieTexture { url [ \"a.mpg\" ] } }"));
+  ASSERT_TRUE(loaded.ok()) << loaded.status().message();
+  EXPECT_EQ(places(loaded->scene), (Places{0, 1}));
+  EXPECT_EQ(loaded->scene.materials[0].diffuse, (Vec3f{1, 0, 0}));
+  EXPECT_FALSE(loaded->scene.materials[1].unlit);
+  ASSERT_EQ(loaded->defects.count(DefectKind::texture_unreadable), 2u);
+  EXPECT_TRUE(loaded->defects.defects[0].first_places[0].ends_with("a.wrl:2: PixelTexture"));
+}
+
 // The box is 1 wide, 4 deep and 2 high: u runs along z, and v along y. Points that no face uses are
 // not part of it.
 TEST(Vrml, TexturesWithoutCoordinatesAreMappedByTheBox) {

@@ -129,9 +129,11 @@ class Parser {
 
   void parse_face() {
     while (!scan_.at_line_end()) {
+      const char* start = scan_.position();
       if (!parse_corner()) {
+        const std::string_view word(start, std::size_t(scan_.word().end() - start));
         return fail(fmt::format("'{}' is not a corner of a face (v, v/vt, v//vn or v/vt/vn)",
-                                scan_.word().substr(0, 40)));
+                                word.substr(0, 40)));
       }
     }
     chunk_.face_end.push_back(static_cast<std::uint32_t>(chunk_.position.index.size()));

@@ -1,5 +1,7 @@
 #include "libatlas/scene/vrml/vrml_appearance.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -73,6 +75,7 @@ class AppearanceParser {
 
   void texture() {
     scan_.read_node(scan_.next(), [&](std::string_view type, std::string_view) {
+      if (type == "MovieTexture" || type == "PixelTexture") return other_texture(type);
       if (type != "ImageTexture") scan_.fail("an ImageTexture expected");
       scan_.fields([&](std::string_view field) {
         if (field == "repeatS") return material_.wrap_u = wrap(), true;
@@ -81,6 +84,15 @@ class AppearanceParser {
         return false;
       });
     });
+  }
+
+  // Leaves the shape its plain colour.
+  void other_texture(std::string_view type) {
+    builder_.defects.add(DefectKind::texture_unreadable, [&] {
+      return fmt::format("{}:{}: {}", builder_.file, scan_.line(), type);
+    });
+    scan_.expect("{");
+    scan_.skip_brackets();
   }
 
   static bool exists(const fs::path& path) {
