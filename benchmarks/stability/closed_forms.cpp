@@ -9,8 +9,8 @@
 
 #include "benchmarks/stability/checks.h"
 #include "benchmarks/stability/stress.h"
-#include "libatlas/param/flatten_disc.h"
-#include "libatlas/param/planar.h"
+#include "libatlas/param/descent/flatten_disc.h"
+#include "libatlas/param/descent/planar.h"
 
 namespace atlas::bench {
 namespace {

@@ -12,9 +12,9 @@
 #include "benchmarks/stability/checks.h"
 #include "benchmarks/stability/stress.h"
 #include "benchmarks/support/measure.h"
-#include "libatlas/param/linear_solver.h"
-#include "libatlas/param/multigrid.h"
 #include "libatlas/param/parameterize.h"
+#include "libatlas/param/solvers/linear_solver.h"
+#include "libatlas/param/solvers/multigrid.h"
 
 namespace atlas::bench {
 namespace {

@@ -11,9 +11,9 @@
 #include "libatlas/charts/chart_set_check.h"
 #include "libatlas/charts/totals.h"
 #include "libatlas/core/parallel.h"
-#include "libatlas/param/halfedges.h"
+#include "libatlas/param/mesh/halfedges.h"
 #include "libatlas/param/orient.h"
-#include "libatlas/param/widen.h"
+#include "libatlas/param/repair/widen.h"
 
 namespace atlas {
 namespace {

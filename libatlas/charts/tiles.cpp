@@ -18,7 +18,7 @@
 #include "libatlas/core/glm_bridge.h"
 #include "libatlas/core/hull.h"
 #include "libatlas/core/parallel.h"
-#include "libatlas/param/halfedges.h"
+#include "libatlas/param/mesh/halfedges.h"
 
 namespace atlas {
 namespace {

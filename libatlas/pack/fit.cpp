@@ -8,11 +8,12 @@
 #include <optional>
 #include <utility>
 
-#include "libatlas/pack/chart_outline.h"
-#include "libatlas/pack/fit_at_scale.h"
-#include "libatlas/pack/fit_pages.h"
-#include "libatlas/pack/lost_room.h"
-#include "libatlas/pack/shape_check.h"
+#include "libatlas/pack/fitting/fit_at_scale.h"
+#include "libatlas/pack/fitting/fit_pages.h"
+#include "libatlas/pack/fitting/lost_room.h"
+#include "libatlas/pack/outlines/chart_outline.h"
+#include "libatlas/pack/outlines/shape_check.h"
+#include "libatlas/pack/pressing/specks.h"
 
 namespace atlas {
 namespace pack {

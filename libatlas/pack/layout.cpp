@@ -2,9 +2,9 @@
 
 #include <fmt/format.h>
 
-#include "libatlas/pack/cells.h"
-#include "libatlas/pack/free_rects.h"
-#include "libatlas/pack/page_index.h"
+#include "libatlas/pack/rectangles/cells.h"
+#include "libatlas/pack/rectangles/free_rects.h"
+#include "libatlas/pack/rectangles/page_index.h"
 
 namespace atlas {
 

@@ -8,90 +8,25 @@
 #include <numbers>
 
 #include "libatlas/core/parallel.h"
-#include "libatlas/pack/nest.h"
-#include "libatlas/pack/shape_check.h"
+#include "libatlas/pack/nesting/grid_choice.h"
+#include "libatlas/pack/nesting/nest.h"
+#include "libatlas/pack/outlines/shape_check.h"
 
 namespace atlas {
-namespace pack {
-
-Status check_shapes(std::span<const ChartShape> shapes) {
-  for (std::size_t i = 0; i < shapes.size(); ++i) {
-    const ChartShape& s = shapes[i];
-    const std::size_t n = s.triangles.empty() ? s.corners.size() : s.triangles.size();
-    if (n % 3 != 0)
-      return {ErrorCode::bad_input,
-              fmt::format("outline: shape {} has {} corners (three a triangle)", i, n)};
-    for (const Vec2d& p : s.corners)
-      if (!(std::abs(p.x) < 1e9) || !(std::abs(p.y) < 1e9))
-        return {ErrorCode::bad_input, fmt::format("outline: shape {} has a corner at {}, {} "
-                                                  "(finite and below 1e9 texels, please)",
-                                                  i, p.x, p.y)};
-    for (std::uint32_t k : s.triangles)
-      if (k >= s.corners.size())
-        return {ErrorCode::bad_input,
-                fmt::format("outline: shape {} refers to corner {} of {}", i, k, s.corners.size())};
-  }
-  return {};
-}
-
-Status check_rotations(std::uint32_t rotations) {
-  if (rotations == 1 || rotations == 2 || (rotations > 0 && rotations <= 64 && rotations % 4 == 0))
-    return {};
-  return {ErrorCode::bad_option, fmt::format("outline: rotations is {} (1, 2, 4 or a multiple of 4 "
-                                             "up to 64)",
-                                             rotations)};
-}
-
-void parallel_chains(const Context& context, std::size_t chains,
-                     const std::function<void(std::size_t)>& run) {
-  parallel_for(context, chains, 1, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t c = begin; c < end; ++c) run(c);
-  });
-}
-
-// A piece costs about 0.0055 examined words per direction and squared page side in cells.
-double layout_cost(std::size_t count, double side_cells, std::uint32_t directions) {
-  return static_cast<double>(count) * directions * side_cells * side_cells * 0.0055;
-}
-
-GridChoice choose_grid(const GridWish& wish) {
-  GridChoice best{wish.alignment, std::min(wish.rotations, 4u)};
-  const double n = static_cast<double>(std::max<std::size_t>(wish.charts, 1));
-  // Coarse cells cost half a cell around each chart. If a mean chart is 32 cells wide, this is a
-  // few percent, and finer grids gain less than more layouts do.
-  const auto cells_a_chart = [&](std::int32_t cell) {
-    return wish.page_side / double(cell) * std::sqrt(0.75 / n);
-  };
-  while (wish.page_side / (2 * best.cell) >= 512 && cells_a_chart(2 * best.cell) >= 32)
-    best.cell *= 2;
-  const auto is_affordable = [&](std::uint32_t directions) {
-    return layout_cost(wish.charts, wish.page_side / double(best.cell), directions) <=
-           wish.affordable;
-  };
-  // Needles do not fit coarse cells well either: these reduced the fill of a page with a thousand
-  // long charts from 0.59 to 0.56. So a layout of needles may cost more.
-  constexpr double kForNeedles = 8;
-  const auto too_coarse = [&](std::int32_t cell) {
-    const double cost =
-        layout_cost(wish.charts, wish.page_side / double(cell / 2), best.directions);
-    const bool narrow = wish.mean_side > 0 && wish.mean_side < 8 * cell;
-    return cells_a_chart(cell) < 8 || (narrow && cost <= kForNeedles * wish.affordable);
-  };
-  while (!is_affordable(best.directions) && !too_coarse(2 * best.cell)) best.cell *= 2;
-  while (best.directions * 2 <= wish.rotations && is_affordable(best.directions * 2))
-    best.directions *= 2;
-  while (best.directions > 4 && wish.rotations % best.directions != 0) best.directions -= 4;
-  return best;
-}
-
-}  // namespace pack
-
 namespace {
 
 using pack::BitPage;
 using pack::Nest;
 using pack::NestPlan;
 using pack::Piece;
+
+// Runs one task per chain, on up to context.threads threads.
+void parallel_chains(const Context& context, std::size_t chains,
+                     const std::function<void(std::size_t)>& run) {
+  parallel_for(context, chains, 1, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t c = begin; c < end; ++c) run(c);
+  });
+}
 
 // Maximum side of a page, and of a chart on an open page.
 constexpr std::int32_t kMostTexels = 1 << 17;
@@ -171,7 +106,7 @@ OnePage search_one_page(std::span<const Piece> pieces, const Grid& grid, const O
     if (o.effort) s.layouts = std::max<std::uint64_t>(1, o.effort / chains);
   }
   std::vector<pack::NestSearchResult> found(chains);
-  pack::parallel_chains(context, chains, [&](std::size_t c) {
+  parallel_chains(context, chains, [&](std::size_t c) {
     pack::NestSearchOptions own = s;
     own.seed = s.seed * 0x10001 + c;
     found[c] = pack::search_nest(pieces, start, own, context);

@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <bit>
 
-#include "libatlas/pack/cells.h"
-#include "libatlas/pack/page_shape.h"
+#include "libatlas/pack/rectangles/cells.h"
+#include "libatlas/pack/rectangles/page_shape.h"
 
 namespace atlas {
 namespace {

@@ -7,8 +7,8 @@
 #include <utility>
 #include <vector>
 
-#include "libatlas/param/percentile.h"
-#include "libatlas/param/rest_shape.h"
+#include "libatlas/param/mesh/percentile.h"
+#include "libatlas/param/mesh/rest_shape.h"
 
 namespace atlas {
 namespace {

@@ -8,9 +8,9 @@
 #include "libatlas/core/bounds.h"
 #include "libatlas/core/hull.h"
 #include "libatlas/core/predicates.h"
-#include "libatlas/param/border_check.h"
-#include "libatlas/param/halfedges.h"
-#include "libatlas/param/rest_shape.h"
+#include "libatlas/param/mesh/halfedges.h"
+#include "libatlas/param/mesh/rest_shape.h"
+#include "libatlas/param/repair/border_check.h"
 
 namespace atlas {
 namespace {

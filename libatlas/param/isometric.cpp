@@ -4,8 +4,8 @@
 #include <cassert>
 #include <utility>
 
-#include "libatlas/param/arap_solver.h"
-#include "libatlas/param/workspace.h"
+#include "libatlas/param/descent/arap_solver.h"
+#include "libatlas/param/descent/workspace.h"
 
 namespace atlas {
 

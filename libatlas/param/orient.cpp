@@ -9,7 +9,7 @@
 #include "libatlas/core/bounds.h"
 #include "libatlas/core/degrees.h"
 #include "libatlas/core/predicates.h"
-#include "libatlas/param/rest_shape.h"
+#include "libatlas/param/mesh/rest_shape.h"
 
 namespace atlas {
 namespace {

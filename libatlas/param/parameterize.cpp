@@ -10,11 +10,11 @@
 #include <vector>
 
 #include "libatlas/core/glm_bridge.h"
-#include "libatlas/param/arap_solver.h"
-#include "libatlas/param/descent.h"
-#include "libatlas/param/flatten_disc.h"
-#include "libatlas/param/judge.h"
-#include "libatlas/param/planar.h"
+#include "libatlas/param/descent/arap_solver.h"
+#include "libatlas/param/descent/descent.h"
+#include "libatlas/param/descent/flatten_disc.h"
+#include "libatlas/param/descent/judge.h"
+#include "libatlas/param/descent/planar.h"
 
 namespace atlas {
 namespace param {

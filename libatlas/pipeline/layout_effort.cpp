@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "libatlas/core/progress.h"
-#include "libatlas/pack/fit_search.h"
+#include "libatlas/pack/fitting/fit_search.h"
 #include "libatlas/pipeline/layout_problem.h"
 #include "libatlas/pipeline/least_room.h"
 

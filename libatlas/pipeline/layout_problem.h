@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "libatlas/charts/charts.h"
-#include "libatlas/pack/fit_search.h"
+#include "libatlas/pack/fitting/fit_search.h"
 #include "libatlas/pipeline/layout_effort.h"
 
 namespace atlas {

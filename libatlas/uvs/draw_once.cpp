@@ -13,7 +13,7 @@
 #include "libatlas/core/bounds.h"
 #include "libatlas/core/glm_bridge.h"
 #include "libatlas/core/parallel.h"
-#include "libatlas/pack/chart_outline.h"
+#include "libatlas/pack/outlines/chart_outline.h"
 #include "libatlas/uvs/chart_drawing.h"
 
 namespace atlas {

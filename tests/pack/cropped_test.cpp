@@ -5,7 +5,7 @@
 #include <limits>
 #include <vector>
 
-#include "libatlas/pack/pull_in.h"
+#include "libatlas/pack/rectangles/pull_in.h"
 #include "tests/pack/checks.h"
 
 namespace atlas {

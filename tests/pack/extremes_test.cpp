@@ -7,9 +7,9 @@
 #include <numbers>
 
 #include "libatlas/core/clock.h"
-#include "libatlas/pack/chart_outline.h"
-#include "libatlas/pack/fit_bounds.h"
-#include "libatlas/pack/outline_mask.h"
+#include "libatlas/pack/fitting/fit_bounds.h"
+#include "libatlas/pack/outlines/chart_outline.h"
+#include "libatlas/pack/outlines/outline_mask.h"
 #include "tests/pack/checks.h"
 #include "tests/support/slowness.h"
 

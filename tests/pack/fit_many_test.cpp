@@ -1,5 +1,5 @@
 // Many charts on a page of any shape, on one of given shape, and on several pages.
-#include "libatlas/pack/fit_many.h"
+#include "libatlas/pack/fitting/fit_many.h"
 
 #include <gtest/gtest.h>
 

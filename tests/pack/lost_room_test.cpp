@@ -1,4 +1,4 @@
-#include "libatlas/pack/lost_room.h"
+#include "libatlas/pack/fitting/lost_room.h"
 
 #include <gtest/gtest.h>
 

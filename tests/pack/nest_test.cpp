@@ -1,5 +1,5 @@
 // Places pieces by plans, and tests the page that only checks places.
-#include "libatlas/pack/nest.h"
+#include "libatlas/pack/nesting/nest.h"
 
 #include <gtest/gtest.h>
 
@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-#include "libatlas/pack/plain_page.h"
+#include "libatlas/pack/nesting/plain_page.h"
 #include "tests/pack/checks.h"
 #include "tests/pack/one_page.h"
 

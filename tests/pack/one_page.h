@@ -5,7 +5,7 @@
 
 #include <vector>
 
-#include "libatlas/pack/fit_search.h"
+#include "libatlas/pack/fitting/fit_search.h"
 #include "tests/pack/checks.h"
 
 namespace atlas::test {

@@ -6,7 +6,7 @@
 #include <array>
 #include <cmath>
 
-#include "libatlas/pack/bit_page.h"
+#include "libatlas/pack/nesting/bit_page.h"
 #include "tests/pack/checks.h"
 
 namespace atlas {

@@ -1,6 +1,6 @@
 // Pieces that may overlap for a while: their overlaps counted cell by cell, and layouts without
 // any.
-#include "libatlas/pack/overlap_search.h"
+#include "libatlas/pack/nesting/overlap_search.h"
 
 #include <gtest/gtest.h>
 
@@ -10,9 +10,9 @@
 #include <utility>
 #include <vector>
 
-#include "libatlas/pack/nudge.h"
-#include "libatlas/pack/pair_overlaps.h"
-#include "libatlas/pack/weight_map.h"
+#include "libatlas/pack/nesting/nudge.h"
+#include "libatlas/pack/nesting/pair_overlaps.h"
+#include "libatlas/pack/nesting/weight_map.h"
 #include "tests/pack/checks.h"
 
 namespace atlas {

@@ -1,5 +1,5 @@
 // Charts that are joined in pairs before they are laid on a page.
-#include "libatlas/pack/pairs.h"
+#include "libatlas/pack/nesting/pairs.h"
 
 #include <gtest/gtest.h>
 

@@ -5,8 +5,8 @@
 #include <limits>
 #include <vector>
 
-#include "libatlas/pack/engines.h"
 #include "libatlas/pack/layout.h"
+#include "libatlas/pack/rectangles/engines.h"
 #include "tests/pack/packed.h"
 
 namespace atlas {

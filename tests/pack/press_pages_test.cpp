@@ -4,7 +4,7 @@
 #include <atomic>
 #include <cmath>
 
-#include "libatlas/pack/fit_pages.h"
+#include "libatlas/pack/fitting/fit_pages.h"
 #include "tests/pack/checks.h"
 
 namespace atlas {

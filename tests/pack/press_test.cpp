@@ -1,6 +1,6 @@
 // The parts of the press: distance fields, bodies that are pushed together, and exact places near
 // the wanted ones.
-#include "libatlas/pack/press.h"
+#include "libatlas/pack/pressing/press.h"
 
 #include <gtest/gtest.h>
 
@@ -8,8 +8,8 @@
 #include <cmath>
 #include <numbers>
 
-#include "libatlas/pack/contacts.h"
-#include "libatlas/pack/settle.h"
+#include "libatlas/pack/pressing/contacts.h"
+#include "libatlas/pack/pressing/settle.h"
 #include "tests/pack/checks.h"
 #include "tests/pack/one_page.h"
 

@@ -1,5 +1,5 @@
 // Copies of one chart: they are recognised, and laid in rows that interlock.
-#include "libatlas/pack/rows.h"
+#include "libatlas/pack/nesting/rows.h"
 
 #include <gtest/gtest.h>
 

@@ -5,11 +5,11 @@
 #include <tuple>
 
 #include "libatlas/core/clock.h"
-#include "libatlas/pack/engines.h"
-#include "libatlas/pack/gap_fill.h"
-#include "libatlas/pack/height_index.h"
-#include "libatlas/pack/skyline.h"
-#include "libatlas/pack/strip_beam.h"
+#include "libatlas/pack/rectangles/engines.h"
+#include "libatlas/pack/rectangles/gap_fill.h"
+#include "libatlas/pack/rectangles/height_index.h"
+#include "libatlas/pack/rectangles/skyline.h"
+#include "libatlas/pack/rectangles/strip_beam.h"
 #include "tests/pack/checks.h"
 #include "tests/support/slowness.h"
 

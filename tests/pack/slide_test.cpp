@@ -1,5 +1,5 @@
 // Masks that slide over a page, compared with the page cell by cell.
-#include "libatlas/pack/slide.h"
+#include "libatlas/pack/nesting/slide.h"
 
 #include <gtest/gtest.h>
 

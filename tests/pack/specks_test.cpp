@@ -1,5 +1,5 @@
 // One page of few charts and many specks: the charts are pressed, and the specks go into the gaps.
-#include "libatlas/pack/specks.h"
+#include "libatlas/pack/pressing/specks.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "libatlas/pack/straight_page.h"
+#include "libatlas/pack/pressing/straight_page.h"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 #include <numbers>
 #include <vector>
 
-#include "libatlas/pack/chart_outline.h"
+#include "libatlas/pack/outlines/chart_outline.h"
 #include "tests/pack/checks.h"
 #include "tests/pack/one_page.h"
 

@@ -10,8 +10,8 @@
 #include <set>
 #include <span>
 
-#include "libatlas/param/halfedges.h"
 #include "libatlas/param/injectivity.h"
+#include "libatlas/param/mesh/halfedges.h"
 #include "tests/param/shapes.h"
 
 namespace atlas {

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "libatlas/param/distortion.h"
-#include "libatlas/param/percentile.h"
+#include "libatlas/param/mesh/percentile.h"
 #include "tests/param/shapes.h"
 
 namespace atlas {

@@ -5,7 +5,7 @@
 #include <utility>
 #include <vector>
 
-#include "libatlas/param/stiffness.h"
+#include "libatlas/param/solvers/stiffness.h"
 #include "tests/param/shapes.h"
 
 namespace atlas {

@@ -6,8 +6,8 @@
 #include <random>
 #include <vector>
 
-#include "libatlas/param/halfedges.h"
 #include "libatlas/param/local_mesh.h"
+#include "libatlas/param/mesh/halfedges.h"
 
 namespace atlas {
 namespace {

@@ -6,9 +6,9 @@
 #include <random>
 
 #include "libatlas/param/cgal_backend.h"
+#include "libatlas/param/descent/planar.h"
 #include "libatlas/param/distortion.h"
 #include "libatlas/param/isometric.h"
-#include "libatlas/param/planar.h"
 #include "tests/param/oracles.h"
 #include "tests/param/shapes.h"
 

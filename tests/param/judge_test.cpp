@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "libatlas/core/predicates.h"
-#include "libatlas/param/judge.h"
+#include "libatlas/param/descent/judge.h"
 #include "tests/param/shapes.h"
 
 namespace atlas {

@@ -8,8 +8,8 @@
 #include <random>
 #include <vector>
 
-#include "libatlas/param/linear_solver.h"
-#include "libatlas/param/stiffness.h"
+#include "libatlas/param/solvers/linear_solver.h"
+#include "libatlas/param/solvers/stiffness.h"
 #include "tests/param/shapes.h"
 
 namespace atlas {

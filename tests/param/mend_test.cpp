@@ -4,9 +4,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "libatlas/param/arap_solver.h"
-#include "libatlas/param/judge.h"
-#include "libatlas/param/mend.h"
+#include "libatlas/param/descent/arap_solver.h"
+#include "libatlas/param/descent/judge.h"
+#include "libatlas/param/descent/mend.h"
 #include "tests/param/shapes.h"
 
 namespace atlas {

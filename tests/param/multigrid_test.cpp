@@ -4,8 +4,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "libatlas/param/multigrid.h"
-#include "libatlas/param/stiffness.h"
+#include "libatlas/param/solvers/multigrid.h"
+#include "libatlas/param/solvers/stiffness.h"
 #include "tests/param/shapes.h"
 
 namespace atlas {

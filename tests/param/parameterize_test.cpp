@@ -7,8 +7,8 @@
 #include <random>
 
 #include "libatlas/core/glm_bridge.h"
+#include "libatlas/param/descent/planar.h"
 #include "libatlas/param/parameterize.h"
-#include "libatlas/param/planar.h"
 #include "tests/param/oracles.h"
 #include "tests/param/results.h"
 #include "tests/param/shapes.h"

@@ -6,9 +6,9 @@
 #include <numbers>
 #include <random>
 
+#include "libatlas/param/descent/planar.h"
 #include "libatlas/param/distortion.h"
 #include "libatlas/param/orient.h"
-#include "libatlas/param/planar.h"
 #include "tests/param/shapes.h"
 
 namespace atlas {

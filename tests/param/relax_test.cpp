@@ -6,8 +6,8 @@
 
 #include "libatlas/core/predicates.h"
 #include "libatlas/param/distortion.h"
-#include "libatlas/param/relax.h"
-#include "libatlas/param/vertex_energy.h"
+#include "libatlas/param/relaxing/relax.h"
+#include "libatlas/param/relaxing/vertex_energy.h"
 #include "tests/param/shapes.h"
 
 namespace atlas {

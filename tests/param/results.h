@@ -6,7 +6,7 @@
 #include <cmath>
 #include <span>
 
-#include "libatlas/param/flatten_disc.h"
+#include "libatlas/param/descent/flatten_disc.h"
 #include "tests/param/shapes.h"
 
 namespace atlas::testing {

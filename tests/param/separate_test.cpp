@@ -9,7 +9,7 @@
 
 #include "libatlas/param/distortion.h"
 #include "libatlas/param/injectivity.h"
-#include "libatlas/param/separate.h"
+#include "libatlas/param/repair/separate.h"
 #include "tests/param/results.h"
 #include "tests/param/shapes.h"
 

@@ -7,7 +7,7 @@
 #include <random>
 #include <vector>
 
-#include "libatlas/param/arap_solver.h"
+#include "libatlas/param/descent/arap_solver.h"
 #include "libatlas/param/parameterize.h"
 #include "tests/param/results.h"
 #include "tests/param/shapes.h"

@@ -9,7 +9,7 @@
 #include <random>
 #include <vector>
 
-#include "libatlas/param/vertex_star.h"
+#include "libatlas/param/relaxing/vertex_star.h"
 
 namespace atlas {
 namespace {

@@ -7,9 +7,9 @@
 #include <numbers>
 
 #include "libatlas/param/distortion.h"
-#include "libatlas/param/halfedges.h"
 #include "libatlas/param/injectivity.h"
-#include "libatlas/param/widen.h"
+#include "libatlas/param/mesh/halfedges.h"
+#include "libatlas/param/repair/widen.h"
 #include "tests/param/oracles.h"
 #include "tests/param/shapes.h"
 

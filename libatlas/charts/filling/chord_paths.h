@@ -9,7 +9,7 @@
 #include "libatlas/charts/flattening/flatten.h"
 #include "libatlas/core/context.h"
 #include "libatlas/core/counting_sort.h"
-#include "libatlas/param/halfedges.h"
+#include "libatlas/param/mesh/halfedges.h"
 
 namespace atlas {
 

@@ -10,7 +10,7 @@
 #include "libatlas/charts/filling/chords.h"
 #include "libatlas/charts/filling/middle_cut.h"
 #include "libatlas/core/hull.h"
-#include "libatlas/param/halfedges.h"
+#include "libatlas/param/mesh/halfedges.h"
 
 namespace atlas {
 namespace {

@@ -7,7 +7,7 @@
 
 #include "libatlas/charts/flattening/flatten.h"
 #include "libatlas/charts/seams/min_cut.h"
-#include "libatlas/param/halfedges.h"
+#include "libatlas/param/mesh/halfedges.h"
 
 namespace atlas {
 

@@ -10,7 +10,7 @@
 
 #include "libatlas/charts/filling/line_cut.h"
 #include "libatlas/charts/flattening/part_of_chart.h"
-#include "libatlas/param/halfedges.h"
+#include "libatlas/param/mesh/halfedges.h"
 
 namespace atlas {
 namespace {

@@ -10,7 +10,7 @@
 #include "libatlas/core/clock.h"
 #include "libatlas/core/degrees.h"
 #include "libatlas/core/glm_bridge.h"
-#include "libatlas/param/flatten_disc.h"
+#include "libatlas/param/descent/flatten_disc.h"
 #include "libatlas/param/orient.h"
 
 namespace atlas {

@@ -5,8 +5,8 @@
 #include <utility>
 #include <vector>
 
-#include "libatlas/param/flatten_disc.h"
-#include "libatlas/param/halfedges.h"
+#include "libatlas/param/descent/flatten_disc.h"
+#include "libatlas/param/mesh/halfedges.h"
 #include "libatlas/param/orient.h"
 
 namespace atlas {

@@ -1,0 +1,56 @@
+// Internal: the ways to fit charts to pages: by boxes, by outlines, and by pressing outlines.
+#pragma once
+
+#include <optional>
+
+#include "libatlas/pack/fitting/fit_search.h"
+#include "libatlas/pack/outlines/chart_outline.h"
+
+namespace atlas::pack {
+
+// Does fit_pages for charts given by their sizes alone. The arguments must have been checked.
+Result<FitResult> fit_boxes(std::span<const FitItem> items, const FitOptions& options,
+                            const Context& context);
+
+// Charts given by their outlines, which have an item each.
+struct FitCharts {
+  std::span<const FitItem> items = {};
+  std::span<const ChartOutline> outlines = {};
+};
+
+// Does fit_pages for charts given by their outlines. The arguments must have been checked. The
+// caller has to set lost_area.
+Result<FitResult> fit_outlines(const FitCharts& charts, const FitSearchOptions& options,
+                               const Context& context);
+
+// Does the same for one page of few charts by pressing. Returns nothing if pressing is not worth a
+// try (worth_pressing), finds nothing, or does not give what was asked for: if all charts fit at
+// the largest scale and the page could be smaller, or if some charts reach their minimum sides.
+std::optional<FitResult> fit_pressed(const FitCharts& charts, const FitSearchOptions& options,
+                                     const Context& context);
+
+// Makes a fit to several pages of few charts each denser. Every page is pressed, and charts change
+// pages until no page is much tighter than the others. Returns nothing if this is not worth a try
+// or finds no larger scale than the fit has. The layouts tried are added to those of the fit in any
+// case.
+std::optional<FitResult> press_pages(FitResult& fitted, const FitCharts& charts,
+                                     const FitSearchOptions& options, const Context& context);
+
+// Groups these areas by F(A) = N. It does not search below the bisection's result, because it is
+// called for every scale that is tried. Returns false if there is no grouping (the areas exceed
+// 2^62, or the context is cancelled).
+bool group_areas(std::span<const std::uint64_t> areas, std::uint32_t pages, const Context& context,
+                 GroupingResult& grouping);
+
+// Returns the grouping of areas that count cells of `cell` x `cell` texels, in texels.
+GroupingResult in_texels(GroupingResult grouping, std::int32_t cell);
+
+// Returns the relative accuracy to which the largest scale that fits should be searched: `exact`,
+// or a coarse value if the page is cropped to the size that many items need.
+double scale_tolerance(const FitOptions& options, double exact, std::size_t items);
+
+// Returns the page sizes with power-of-two sides that are smaller than the largest, in texels, in
+// ascending order of area.
+std::vector<Extent> smaller_pages(const FitOptions& options);
+
+}  // namespace atlas::pack

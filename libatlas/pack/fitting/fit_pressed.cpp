@@ -1,0 +1,30 @@
+#include "libatlas/pack/fitting/fit_bounds.h"
+#include "libatlas/pack/fitting/fit_factors.h"
+#include "libatlas/pack/fitting/fit_pages.h"
+#include "libatlas/pack/fitting/fit_result.h"
+#include "libatlas/pack/outlines/outline_mask.h"
+#include "libatlas/pack/pressing/press.h"
+#include "libatlas/pack/pressing/specks.h"
+#include "libatlas/pack/pressing/straight_page.h"
+
+namespace atlas::pack {
+
+std::optional<FitResult> fit_pressed(const FitCharts& charts, const FitSearchOptions& options,
+                                     const Context& context) {
+  const auto [items, outlines] = charts;
+  if (!worth_pressing(outlines, options)) return std::nullopt;
+  const bool straight = outlines.size() > 1 && is_straight(outlines);
+  // On a page of given shape, the search over cells fills more with straight charts than pressing
+  // does.
+  if (straight && !options.free_aspect && options.preset != PackPreset::best) return std::nullopt;
+  if (straight && has_specks(outlines, options)) return std::nullopt;
+  if (!straight && are_slivers(outlines, options)) return std::nullopt;
+  PressedPage pressed = straight && options.free_aspect
+                            ? pack_straight(outlines, options, context)
+                            : press_outlines(outlines, options, context);
+  if (pressed.scale == 0 || pressed.scale > options.max_scale) return std::nullopt;
+  if (below_minimum_side(items, options, pressed.scale)) return std::nullopt;
+  return result_of(pressed, outlines, options);
+}
+
+}  // namespace atlas::pack
