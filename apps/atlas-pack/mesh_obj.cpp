@@ -8,8 +8,8 @@
 
 #include "libatlas/core/counting_sort.h"
 #include "libatlas/core/text_buffer.h"
-#include "libatlas/scene/losses.h"
-#include "libatlas/scene/obj_names.h"
+#include "libatlas/scene/building/losses.h"
+#include "libatlas/scene/obj/obj_names.h"
 #include "libatlas/scene/uv_page.h"
 
 namespace atlas::app {

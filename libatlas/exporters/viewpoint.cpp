@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "libatlas/core/glm_bridge.h"
-#include "libatlas/exporters/view_grid.h"
+#include "libatlas/exporters/viewing/view_grid.h"
 
 namespace atlas {
 namespace {

@@ -7,13 +7,13 @@
 
 #include "libatlas/core/file_extension.h"
 #include "libatlas/core/glm_bridge.h"
-#include "libatlas/exporters/camera.h"
-#include "libatlas/exporters/compact_page.h"
-#include "libatlas/exporters/far_origin.h"
-#include "libatlas/exporters/page_sides.h"
-#include "libatlas/exporters/text_output.h"
-#include "libatlas/exporters/visitor.h"
+#include "libatlas/exporters/viewing/camera.h"
+#include "libatlas/exporters/viewing/visitor.h"
 #include "libatlas/exporters/world.h"
+#include "libatlas/exporters/writing/compact_page.h"
+#include "libatlas/exporters/writing/far_origin.h"
+#include "libatlas/exporters/writing/page_sides.h"
+#include "libatlas/exporters/writing/text_output.h"
 
 namespace atlas {
 namespace fs = std::filesystem;

@@ -4,10 +4,8 @@
 
 #include <cmath>
 #include <limits>
-#include <string_view>
 
 #include "libatlas/core/is_finite.h"
-#include "libatlas/exporters/text_output.h"
 #include "libatlas/scene/check_scene.h"
 
 namespace atlas {
@@ -102,16 +100,6 @@ Status check_world(const World& world) {
 
 Status check_no_tiles(const World& world) {
   return world.uv_tiles.empty() ? Status() : wrong("it has UDIM tiles, which only OBJ has");
-}
-
-std::string encode_uri(const std::string& name) {
-  std::string result;
-  for (const char c : name) {
-    const bool plain = c >= '!' && c <= '~' &&
-                       std::string_view("\"\\%#?<>^`{|}").find(c) == std::string_view::npos;
-    result += plain ? std::string(1, c) : fmt::format("%{:02X}", static_cast<unsigned char>(c));
-  }
-  return result;
 }
 
 std::string page_name(const std::filesystem::path& target, std::size_t page) {

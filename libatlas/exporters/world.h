@@ -126,8 +126,8 @@ Result<WorldFile> write_obj(const World& world, const std::filesystem::path& pat
 // primitive, with NORMAL, the scene's own uvs as TEXCOORD_0 and the new ones as TEXCOORD_1 (as both
 // sets if it has none; with a higher World::uv_set, all sets from TEXCOORD_1 on), and its light as
 // COLOR_0 (or _ILLUMINANCE, if values leave 0..1), with the vertices' opacity as its alpha.
-// Materials keep base colours with their textures, opacity and emission. No camera is written. The
-// root nodes are the objects themselves if nothing must be turned, scaled or moved.
+// Materials keep base colours with their textures, opacity and emission, and stay unlit. There is
+// no camera. The root nodes are the objects if nothing must be turned, scaled or moved.
 Result<WorldFile> write_gltf(const World& world, const std::filesystem::path& path,
                              AtomicFiles& files, const Context& context);
 

@@ -7,9 +7,9 @@
 
 #include "libatlas/core/bounds.h"
 #include "libatlas/core/glm_bridge.h"
-#include "libatlas/scene/file_bytes.h"
-#include "libatlas/scene/formats.h"
-#include "libatlas/scene/text_scanner.h"
+#include "libatlas/scene/building/formats.h"
+#include "libatlas/scene/files/file_bytes.h"
+#include "libatlas/scene/files/text_scanner.h"
 
 namespace atlas {
 namespace fs = std::filesystem;

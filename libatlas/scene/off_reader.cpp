@@ -11,9 +11,9 @@
 #include <optional>
 #include <span>
 
-#include "libatlas/scene/file_bytes.h"
-#include "libatlas/scene/formats.h"
-#include "libatlas/scene/text_scanner.h"
+#include "libatlas/scene/building/formats.h"
+#include "libatlas/scene/files/file_bytes.h"
+#include "libatlas/scene/files/text_scanner.h"
 
 namespace atlas {
 namespace fs = std::filesystem;
@@ -387,12 +387,13 @@ Status read_off(const fs::path& path, SceneBuilder& builder, const Context& cont
   if (!bytes.ok()) return bytes.status();
   builder.objects.push_back({});
   builder.materials.push_back({});
-  TextScanner scan(bytes->begin(), bytes->end());
+  constexpr TextScanner::Lines kLines = TextScanner::Lines::never_joined;
+  TextScanner scan(bytes->begin(), bytes->end(), kLines);
   OffLayout layout;
   const bool binary = read_keyword(scan, builder.file, layout).ok() && layout.binary;
   if (!binary) {
     if (Status s = turn_into_lines(*bytes, path); !s.ok()) return s;
-    scan = TextScanner(bytes->begin(), bytes->end());
+    scan = TextScanner(bytes->begin(), bytes->end(), kLines);
     layout = {};
     if (Status s = read_keyword(scan, builder.file, layout); !s.ok()) return s;
   }

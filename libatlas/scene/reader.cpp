@@ -6,7 +6,8 @@
 
 #include "libatlas/core/clock.h"
 #include "libatlas/core/file_extension.h"
-#include "libatlas/scene/formats.h"
+#include "libatlas/scene/building/formats.h"
+#include "libatlas/scene/gltf/gltf_source.h"
 
 namespace atlas {
 namespace fs = std::filesystem;
@@ -73,8 +74,14 @@ Result<LoadedScene> read_scene(const fs::path& path, const ReadOptions& given,
     if (Status s = read_illumination(options.illumination_file, builder, context); !s.ok())
       return s;
   }
+  const std::shared_ptr<GltfSource> source = builder.source;
   auto result = builder.finish(options, context);
   if (result.ok()) result->files = std::move(builder.files);
+  if (result.ok() && source) {
+    source->image_texture = std::move(builder.texture_numbers);
+    source->other_light = !options.illumination_file.empty();
+    source->positions_mark = positions_mark(result->scene);
+  }
   return_freed_memory();  // half of the memory that reading took
   context.report("reading", 1);
   return result;

@@ -145,5 +145,25 @@ TEST(KeptMtl, OpacityAndClampingOfMtlInGltf) {
   EXPECT_EQ(back->scene.textures.size(), 1u);
 }
 
+// What shows light already is not lit once more by the viewers of the copy.
+TEST(KeptMtl, UnlitTexturesStayUnlitInGltf) {
+  const TempFolder folder;
+  ASSERT_TRUE(write_png(folder / "a.png", Image8(2, 2, 3, 9), {}).ok());
+  folder.write("m.mtl", "newmtl a\nillum 0\nmap_Kd a.png\nnewmtl b\nKe 2 2 2\nmap_Kd a.png\n");
+  const path obj =
+      folder.write("s.obj",
+                   "mtllib m.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvt 2 0\nvt 0 2\nusemtl a\n"
+                   "f 1/1 2/2 3/3\nusemtl b\nf 1/1 3/3 2/2\n");
+  EXPECT_EQ(keep(obj, folder / "w.gltf", kRest).not_kept, Lines{});
+  const json document = json::parse(TempFolder::read(folder / "w.gltf"));
+  EXPECT_EQ(document["extensionsUsed"],
+            (json{"KHR_materials_emissive_strength", "KHR_materials_unlit"}));
+  const auto back = read_scene(folder / "w.gltf", {}, {});
+  ASSERT_TRUE(back.ok()) << back.status().message();
+  ASSERT_EQ(back->scene.materials.size(), 2u);
+  EXPECT_TRUE(back->scene.materials[0].unlit);
+  EXPECT_FALSE(back->scene.materials[1].unlit);
+}
+
 }  // namespace
 }  // namespace atlas::test

@@ -241,14 +241,14 @@ TEST(Vrml, ViewpointLooksWhereItShould) {
 TEST(Vrml, NamesAreEncodedAndPagesMayBeEmptyOrBare) {
   const TempFolder folder;
   World world = wavy_world(6, 2);
-  world.pages[0].image = "my caf\xc3\xa9 #1.png";
+  world.pages[0].image = "my:caf\xc3\xa9 #1.png";
   world.pages[1].image.clear();
   world.pages.push_back({"empty.png", {}, {}, {}});
   const Nodes nodes = parse_vrml(write(world, folder / "n.wrl"));
   const auto shapes = of_type(nodes, "Shape");
   ASSERT_EQ(shapes.size(), 2u);
   EXPECT_EQ(shapes[0]->child("appearance").child("texture").field("url")[0],
-            "\"my%20caf%C3%A9%20%231.png\"");
+            "\"my%3Acaf%C3%A9%20%231.png\"");
   EXPECT_FALSE(shapes[1]->child("appearance").has("texture"));
   const std::string safe = safe_file_name("my caf\xc3\xa9 #1");
   EXPECT_EQ(safe.substr(0, 12), "my_caf____1-");

@@ -1,5 +1,5 @@
 // The origin that positions are stored relative to.
-#include "libatlas/scene/frame.h"
+#include "libatlas/scene/building/frame.h"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>

@@ -242,6 +242,21 @@ TEST(Gltf, HiddenNodesAreLeftOut) {
             std::string::npos);
 }
 
+// Some files require what changes no shape, so that viewers do not ignore it.
+TEST(Gltf, RequiredExtensionsThatChangeNoShape) {
+  const TempFolder folder;
+  for (const char* name : {"KHR_animation_pointer", "KHR_xmp_json_ld", "KHR_node_selectability",
+                           "KHR_node_hoverability", "EXT_mesh_features", "EXT_instance_features",
+                           "EXT_structural_metadata", "EXT_lights_image_based", "EXT_lights_ies"}) {
+    Gltf g;
+    g.single({{"attributes", {{"POSITION", g.floats(kSquare, "VEC3", 3)}}},
+              {"indices", g.indices(std::vector<std::uint16_t>{0, 1, 2})}});
+    g.j["extensionsUsed"] = g.j["extensionsRequired"] = {name};
+    const auto loaded = load_glb(folder, g);
+    EXPECT_TRUE(loaded.ok()) << loaded.status().message();
+  }
+}
+
 // A file without nodes is a library. Each mesh is read once, without a transform.
 TEST(Gltf, MeshesWithoutNodes) {
   const TempFolder folder;

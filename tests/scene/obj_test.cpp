@@ -121,6 +121,17 @@ TEST(Obj, NamesEndBeforeComments) {
   EXPECT_EQ(scene.materials[1].name, "m");
 }
 
+// A backslash at the end of a comment joins no lines: the face after it was left out.
+TEST(Obj, CommentsBehindNamesMayEndInBackslashes) {
+  const TempFolder folder;
+  for (const char* line : {"g a", "o a", "usemtl m", "mtllib none.mtl", "s 1", "unknown"}) {
+    const LoadedScene loaded =
+        load(folder.write("c.obj", std::string("v 0 0 0\nv 1 0 0\nv 0 1 0\n") + line +
+                                       " # in C:\\tmp\\\nf 1 2 3\nf 3 2 1\n"));
+    EXPECT_EQ(loaded.scene.triangle_count(), 2u) << line;
+  }
+}
+
 // Weights after the position, fourth components of colours, texture coordinates of one number, and
 // lines that change nothing that is read.
 TEST(Obj, WhatTheFormatAllowsIsNoDefect) {

@@ -35,7 +35,8 @@ TEST(Off, HeadersAlike) {
   EXPECT_FALSE(plain.lit());
   for (const char* header :
        {"4 1 0\n", "OFF 4 1 0\n", "OFF4 1 0 # as in ModelNet\n", "OFF\n4 1\n",
-        "# by hand\n\nOFF # here\n\n# and\n 4 1 0 # there\n\n", "\t OFF\r\n4 1 0\r\n"}) {
+        "OFF # C:\\\n4 1 0 # there\\\n", "# by hand\n\nOFF # here\n\n# and\n 4 1 0 # there\n\n",
+        "\t OFF\r\n4 1 0\r\n"}) {
     const Scene scene = scene_of(header + kCorners + "\n4 0 1 2 3 # end");
     EXPECT_EQ(scene.indices, plain.indices) << header;
     EXPECT_EQ(scene.positions, plain.positions) << header;

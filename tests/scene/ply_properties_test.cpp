@@ -48,6 +48,21 @@ TEST(Ply, NamesOfColoursAndTexcoords) {
   }
 }
 
+// In PLY, neither a backslash at the end of a line nor a '#' means anything.
+TEST(Ply, BackslashesAndHashesMeanNothing) {
+  const TempFolder folder;
+  const Scene scene =
+      load(folder.write("c.ply",
+                        "ply\nformat ascii 1.0\ncomment made in C:\\models\\\n"
+                        "comment TextureFile wall #2.png\nobj_info C:\\\nelement vertex 3\n"
+                        "property float x\nproperty float y\nproperty float z\nelement face 1\n"
+                        "property list uchar int vertex_indices\nend_header\n"
+                        "0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n"))
+          .scene;
+  EXPECT_EQ(scene.triangle_count(), 1u);
+  EXPECT_EQ(scene.materials[0].name, "wall #2.png");
+}
+
 // Colours are decoded only where they are asked for, are not linear by their name, and lie within
 // 0 to 1.
 TEST(Ply, ColoursOfScansAreDecoded) {

@@ -1,4 +1,4 @@
-#include "libatlas/scene/polygon.h"
+#include "libatlas/scene/building/polygon.h"
 
 #include <gtest/gtest.h>
 

@@ -6,7 +6,7 @@
 #include <random>
 #include <string>
 
-#include "libatlas/scene/text_scanner.h"
+#include "libatlas/scene/files/text_scanner.h"
 
 namespace atlas {
 namespace {
@@ -26,6 +26,22 @@ TEST(TextScanner, NumbersAgreeWithTheLibrary) {
       EXPECT_EQ(scan.word(), "x");
     }
   }
+}
+
+// A backslash joins lines, but not if it ends a comment.
+TEST(TextScanner, CommentsAreNotContinued) {
+  for (const char* comment : {"# a \\\n", "1 # a \\\n", "g a # C:\\tmp\\\r\n", " \t# \\\n"}) {
+    const std::string text = comment + std::string("next\n");
+    TextScanner scan(text.data(), text.data() + text.size());
+    scan.next_line();
+    EXPECT_EQ(scan.line(), 1u) << comment;
+    EXPECT_EQ(scan.word(), "next") << comment;
+  }
+  const std::string text = "g a#1 \\\nb\nnext\n";
+  TextScanner scan(text.data(), text.data() + text.size());
+  scan.next_line();
+  EXPECT_EQ(scan.line(), 2u);
+  EXPECT_EQ(scan.word(), "next");
 }
 
 TEST(TextScanner, OddNumbers) {

@@ -216,7 +216,7 @@ TEST(Vrml, WhatIsMalformedIsNamed) {
     EXPECT_NE(loaded.status().message().find(wanted), std::string::npos)
         << loaded.status().message();
   };
-  says(shape(0, "Appearance { texture MovieTexture { } }"), "a.wrl:2: an ImageTexture expected");
+  says(shape(0, "Appearance { texture Material { } }"), "a.wrl:2: an ImageTexture expected");
   says(shape(0, "Material { }"), "an Appearance expected");
   says(shape(0, "Appearance { texture ImageTexture { url [ a.png ] } }"), "a url in quotes");
   says(painted(0, "Material { diffuseColor inf 0 0 }"), "a finite number expected");

@@ -106,6 +106,55 @@ TEST(Vrml, TexturesAreSharedAsWell) {
   EXPECT_EQ(loaded.scene.materials[0].name, "a.png");
 }
 
+TEST(Vrml, TexturesThatAreNoFilesLeaveThePlainColour) {
+  const TempFolder folder;
+  const auto loaded =
+      read(folder, shape(0,
+                         "Appearance { texture PixelTexture { image 1 1 3 0xff0000 } material "
+                         "Material { diffuseColor 1 0 0 } }") +
+                       shape(1, "Appearance { texture MovieTexture { url [ \"a.mpg\" ] } }"));
+  ASSERT_TRUE(loaded.ok()) << loaded.status().message();
+  EXPECT_EQ(places(loaded->scene), (Places{0, 1}));
+  EXPECT_EQ(loaded->scene.materials[0].diffuse, (Vec3f{1, 0, 0}));
+  EXPECT_FALSE(loaded->scene.materials[1].unlit);
+  ASSERT_EQ(loaded->defects.count(DefectKind::texture_unreadable), 2u);
+  EXPECT_TRUE(loaded->defects.defects[0].first_places[0].ends_with("a.wrl:2: PixelTexture"));
+}
+
+// The box is 1 wide, 4 deep and 2 high: u runs along z, and v along y. Points that no face uses are
+// not part of it.
+TEST(Vrml, TexturesWithoutCoordinatesAreMappedByTheBox) {
+  const TempFolder folder;
+  const auto shape = [](const std::string& fields) {
+    return "Shape { appearance Appearance { " + fields +
+           " } geometry IndexedFaceSet { coord Coordinate { point [ 1 1 1, 2 3 1, 1 1 5, 9 9 9 ] } "
+           "coordIndex [ 0 1 2 ] } }";
+  };
+  const Scene scene = scene_of(folder, shape("texture ImageTexture { url \"a.png\" }"));
+  ASSERT_EQ(scene.texcoord_indices.size(), 3u);
+  std::vector<Vec2f> uvs;
+  for (const std::uint32_t i : scene.texcoord_indices) uvs.push_back(scene.texcoords[i]);
+  EXPECT_EQ(uvs, (std::vector<Vec2f>{{0, 0}, {0, 0.5f}, {1, 0}}));
+  EXPECT_TRUE(scene_of(folder, shape("")).texcoord_indices.empty());
+}
+
+// Urls are percent-encoded. Names that are not, although they have percent signs, are found, too.
+// Of several urls, one is taken that is a file here.
+TEST(Vrml, UrlsAreDecodedAndTried) {
+  const TempFolder folder;
+  folder.write("my a.png", "no image");
+  folder.write("my%20b.png", "no image");
+  for (const char* url :
+       {R"("my%20a.png")", R"("my a.png")", R"("my%20b.png")", R"(["gone.png" "my a.png"])",
+        R"(["http://a.org/my%20a.png", "gone.png", "my%20a.png"])"}) {
+    const auto loaded = load(folder.write(
+        "t.wrl", "#VRML V2.0 utf8\n" + shape(0, "Appearance { texture ImageTexture { url " +
+                                                    std::string(url) + " } }")));
+    EXPECT_EQ(loaded.defects.count(DefectKind::texture_missing), 0u) << url;
+    EXPECT_EQ(loaded.defects.count(DefectKind::texture_unreadable), 1u) << url;
+  }
+}
+
 // The values are those of the formula in the standard, worked out by hand.
 TEST(Vrml, TextureTransformsMoveCoordinates) {
   const TempFolder folder;
@@ -300,6 +349,22 @@ TEST(Vrml, RandomDamageNeverCrashes) {
     ASSERT_TRUE(test::sound(loaded->scene)) << bytes;
   }
   EXPECT_GT(read_well, 300);
+}
+
+// What moves is read as it is at rest. Routes may stand wherever nodes and fields may.
+TEST(Vrml, RoutesAreSkipped) {
+  const TempFolder folder;
+  const auto loaded =
+      read(folder,
+           "DEF clock TimeSensor { loop TRUE }\nDEF way PositionInterpolator { key [ 0 1 ] }\n"
+           "DEF it Transform { translation 5 0 0\nROUTE way.value TO it.translation\nchildren [ " +
+               shape(0) +
+               "] }\nGroup { bboxSize 1 1 1 ROUTE clock.a TO way.b }\n"
+               "ROUTE clock.fraction_changed TO way.set_fraction\n" +
+               shape(2));
+  ASSERT_TRUE(loaded.ok()) << loaded.status().message();
+  EXPECT_EQ(places(loaded->scene), (Places{5, 2}));
+  EXPECT_EQ(loaded->defects.count(DefectKind::element_ignored), 1u);
 }
 
 TEST(Vrml, WhatIsNotReadIsNamedWithItsLine) {

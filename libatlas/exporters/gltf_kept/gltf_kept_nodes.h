@@ -1,0 +1,29 @@
+// Internal: the nodes of a glTF file that is written again. Includes tinygltf, so it is for .cpp
+// files only.
+#pragma once
+
+#include <vector>
+
+#include "libatlas/exporters/world.h"
+#include "libatlas/scene/building/losses.h"
+#include "libatlas/scene/gltf/gltf_source.h"
+
+namespace atlas {
+
+// Returns for each place of the source the number of its mesh, which no other place and no other
+// node has: that of the mesh that the place shows if it is free, otherwise one behind the source's
+// meshes.
+std::vector<std::size_t> number_kept_meshes(const GltfSource& source);
+
+// Puts meshes of these numbers, one per place, into the nodes of `document`, which are those of the
+// source. Instances of a node become its children; a node with several parents becomes one node per
+// parent. What instances have besides their places is counted. If the world is not in metres or not
+// y-up, another node is added above those that are shown.
+void place_kept_meshes(const World& world, const std::vector<std::size_t>& meshes,
+                       nlohmann::json& document, Losses& losses);
+
+// Removes meshes that have lost all of their primitives, because the format forbids them, and
+// removes them from their nodes. The other meshes get new numbers.
+void drop_empty_meshes(nlohmann::json& document, Losses& losses);
+
+}  // namespace atlas

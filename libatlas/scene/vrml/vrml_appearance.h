@@ -1,0 +1,16 @@
+// Internal: reads the Appearance nodes of VRML97.
+#pragma once
+
+#include <string_view>
+
+#include "libatlas/scene/building/scene_builder.h"
+#include "libatlas/scene/vrml/vrml_scanner.h"
+
+namespace atlas {
+
+// Reads an Appearance, whose first token is `token`, except for its highlights. The material has
+// the name that DEF gives its Material, else its Appearance, else that of its image, or none. The
+// texture is one of the builder's.
+RawMaterial read_vrml_appearance(std::string_view token, VrmlScanner& scan, SceneBuilder& builder);
+
+}  // namespace atlas

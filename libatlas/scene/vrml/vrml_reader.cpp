@@ -1,0 +1,378 @@
+// Reads VRML97 worlds: the part of the language that this project's exporter writes, and similar
+// files. Everything else is skipped by its brackets.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <glm/gtc/quaternion.hpp>
+#include <glm/mat4x4.hpp>
+#include <map>
+#include <tuple>
+
+#include "libatlas/core/bounds.h"
+#include "libatlas/core/glm_bridge.h"
+#include "libatlas/scene/building/formats.h"
+#include "libatlas/scene/files/file_bytes.h"
+#include "libatlas/scene/files/text_scanner.h"
+#include "libatlas/scene/vrml/vrml_appearance.h"
+#include "libatlas/scene/vrml/vrml_scanner.h"
+
+namespace atlas {
+namespace fs = std::filesystem;
+namespace {
+
+constexpr int kMaxDepth = 200;  // of nested nodes
+
+// What a Shape holds, before its faces become triangles.
+struct Shape {
+  std::vector<Vec3d> points;
+  std::vector<Vec2f> uvs;
+  std::vector<std::int32_t> corners, uv_corners;  // indices, with a -1 after each face
+  std::uint32_t material = 0;
+  bool clockwise = false;  // the order of a face's corners, seen from its front
+  // Whether the file says so itself. TRUE is also the default, but many files do not say it of
+  // faces that are to be seen from both sides, so these stay double-sided.
+  bool solid = false;
+};
+
+glm::dmat4 rotation(const glm::dvec4& axis_and_angle) {
+  const glm::dvec3 axis(axis_and_angle);
+  const double length = glm::length(axis);
+  return length > 0 ? glm::mat4_cast(glm::angleAxis(axis_and_angle.w, axis / length))
+                    : glm::dmat4(1);
+}
+
+// Gives a shape without texture coordinates those of the standard: the longest side of its box runs
+// from u = 0 to 1, and the next longest along v in the same scale. Of equal sides, x comes before y
+// and y before z.
+void add_default_uvs(Shape& shape) {
+  Bounds<glm::dvec3> box;
+  for (const std::int32_t i : shape.corners)
+    if (i >= 0 && std::size_t(i) < shape.points.size() && usable_position(shape.points[i]))
+      box.add(to_glm(shape.points[i]));
+  const glm::dvec3 size = box.size();
+  std::array<int, 3> axes{0, 1, 2};
+  std::stable_sort(axes.begin(), axes.end(), [&](int a, int b) { return size[a] > size[b]; });
+  const double longest = size[axes[0]];
+  if (!(longest > 0)) return;
+  for (const Vec3d& point : shape.points) {
+    const glm::dvec3 from_low = (to_glm(point) - box.low) / longest;
+    shape.uvs.push_back({float(from_low[axes[0]]), float(from_low[axes[1]])});
+  }
+  shape.uv_corners.clear();
+}
+
+bool is_group(std::string_view type) {
+  return type == "Transform" || type == "Group" || type == "Collision" || type == "Anchor" ||
+         type == "Billboard";
+}
+
+// Materials with the same key are the same in all that is read.
+auto key_of(const RawMaterial& m) {
+  return std::tuple(m.name, m.texture, m.wrap_u, m.wrap_v, m.uv_u, m.uv_v, m.opacity,
+                    m.double_sided, m.unlit, m.diffuse.x, m.diffuse.y, m.diffuse.z, m.emission.x,
+                    m.emission.y, m.emission.z);
+}
+
+class VrmlParser : VrmlScanner {
+ public:
+  VrmlParser(const std::string& text, SceneBuilder& builder, const Context& context)
+      : VrmlScanner(text, context), builder_(builder), context_(context) {}
+
+  Status run() {
+    if (!text().starts_with("#VRML V2.0 utf8")) {
+      return error("a VRML97 file begins with '#VRML V2.0 utf8'");
+    }
+    try {
+      for (std::string_view token = next(); !token.empty(); token = next()) {
+        node(token, glm::dmat4(1), 0);
+      }
+    } catch (const MalformedVrml&) {
+      return context_.cancelled() ? Status::cancelled() : error(what());
+    }
+    if (shapes_.empty() && builder_.defects.count(DefectKind::node_hidden) > 0) return all_hidden();
+    finish();
+    return {};
+  }
+
+ private:
+  Status error(const std::string& what) const {
+    const bool remedied = what.ends_with(')');
+    return {ErrorCode::bad_input,
+            fmt::format(
+                "{}:{}: {}{}", builder_.file, line(), what,
+                remedied ? "" : " (not all of VRML97 is read; give the scene in another format)")};
+  }
+
+  Status all_hidden() const {
+    return {ErrorCode::bad_input,
+            fmt::format("{}: no triangle to work on: it shows none of the children of {} Switch "
+                        "nodes (set their whichChoice)",
+                        builder_.file, builder_.defects.count(DefectKind::node_hidden))};
+  }
+
+  void node(std::string_view token, const glm::dmat4& matrix, int depth) {
+    if (depth > kMaxDepth) fail("nodes are nested too deeply");
+    if (token == "ROUTE") return ignored(token), skip_route();  // the world at rest is read
+    if (token == "PROTO" || token == "EXTERNPROTO") fail(fmt::format("{} is not supported", token));
+    read_node(token, [&](std::string_view type, std::string_view) {
+      if (type == "Shape") return shape(matrix);
+      if (is_group(type)) return group(matrix, depth);
+      if (type == "Switch" || type == "LOD") return choice(type == "LOD", matrix, depth);
+      if (type == "WorldInfo") return world_info();
+      if (type == "Viewpoint") return viewpoint(matrix);
+      if (type == "Inline") ignored(type);  // the shapes of another file
+      skip();
+    });
+  }
+
+  // Skips a node after its type.
+  void skip() {
+    expect("{");
+    skip_brackets();
+  }
+
+  void ignored(std::string_view type) {
+    builder_.defects.add(DefectKind::element_ignored, [&] { return place_of(place(), type); });
+  }
+  std::string place_of(const char* at, std::string_view type) const {
+    return fmt::format("{}:{}: {}", builder_.file, line_of(at), type);
+  }
+
+  // Reads the exporter's notes of the pages' shapes, and of an origin for which single-precision
+  // coordinates would not suffice.
+  void world_info() {
+    constexpr std::string_view kNote = "\"origin ";
+    fields([&](std::string_view name) {
+      if (name != "info" || peek() != "[") return false;
+      next();
+      for (std::string_view token = next(); token != "]" && !token.empty(); token = next()) {
+        builder_.uv_pages.take(token);
+        if (!token.starts_with(kNote)) continue;
+        const char* p = token.data() + kNote.size();
+        glm::dvec3 origin(0);
+        for (int i = 0; i < 3 && p; ++i)
+          p = parse_number(p + (i > 0), token.data() + token.size(), origin[i]);
+        if (p && *p == ':') origin_ = origin;
+      }
+      return true;
+    });
+  }
+
+  void viewpoint(const glm::dmat4& matrix) {
+    glm::dvec3 position(0, 0, 10);
+    glm::dvec4 turn(0, 0, 1, 0);
+    fields([&](std::string_view name) {
+      if (name == "position") return position = glm::dvec3(row(3)), true;
+      if (name == "orientation") return turn = row(4), true;
+      return false;
+    });
+    const glm::dmat4 axes = matrix * rotation(turn);
+    builder_.take_view(from_glm(glm::dvec3(matrix * glm::dvec4(position, 1))),
+                       from_glm(-glm::dvec3(axes[2])));
+  }
+
+  // The children of a Transform may come before its translation, rotation and scale, so they are
+  // read in a second pass.
+  void group(const glm::dmat4& matrix, int depth) {
+    glm::dvec3 translation(0), centre(0), scale(1);
+    glm::dvec4 turn(0, 0, 1, 0), scale_axes(0, 0, 1, 0);
+    const char* children = nullptr;
+    fields([&](std::string_view name) {
+      if (name == "translation") return translation = glm::dvec3(row(3)), true;
+      if (name == "center") return centre = glm::dvec3(row(3)), true;
+      if (name == "scale") return scale = glm::dvec3(row(3)), true;
+      if (name == "scaleOrientation") return scale_axes = row(4), true;
+      if (name == "rotation") return turn = row(4), true;
+      if (name == "children") children = place();
+      return false;
+    });
+    if (!children) return;
+    const glm::dmat4 axes = rotation(scale_axes);
+    glm::dmat4 local = rotation(turn) * axes;
+    for (int c = 0; c < 3; ++c) local[c] *= scale[c];
+    local = local * glm::transpose(axes);
+    local[3] = glm::dvec4(translation + centre - glm::dvec3(local * glm::dvec4(centre, 0)), 1);
+    const char* after = place();
+    go_to(children);
+    nodes([&](std::string_view token) { node(token, matrix * local, depth + 1); });
+    go_to(after);
+  }
+
+  // Reads the child of a Switch that whichChoice names, or the first level of an LOD, which is the
+  // finest.
+  void choice(bool lod, const glm::dmat4& matrix, int depth) {
+    const char *begin = place(), *children = nullptr;
+    double chosen = lod ? 0 : -1;
+    fields([&](std::string_view name) {
+      if (name == "whichChoice" && !lod) return chosen = row(1).x, true;
+      if (name == (lod ? "level" : "choice")) children = place();
+      return false;
+    });
+    if (!children) return;
+    const char* after = place();
+    go_to(children);
+    double count = 0;
+    bool shown = false;
+    nodes([&](std::string_view token) {
+      if (count++ != chosen) return skip_node(token);
+      shown = true;
+      node(token, matrix, depth + 1);
+    });
+    if (count > 0 && !shown) {
+      builder_.defects.add(DefectKind::node_hidden, [&] {
+        return place_of(begin, fmt::format("Switch with whichChoice {}", chosen));
+      });
+    }
+    go_to(after);
+  }
+
+  void shape(const glm::dmat4& matrix) {
+    Shape result;
+    RawMaterial material;
+    bool has_faces = false;
+    fields([&](std::string_view name) {
+      if (name == "appearance")
+        return material = read_vrml_appearance(next(), *this, builder_), true;
+      if (name != "geometry") return false;
+      read_node(next(), [&](std::string_view type, std::string_view) {
+        if (type == "IndexedFaceSet") return face_set(result), void(has_faces = true);
+        ignored(type);
+        skip();
+      });
+      return true;
+    });
+    if (!has_faces) return;
+    if (material.texture >= 0 && result.uvs.empty()) add_default_uvs(result);
+    material.double_sided = !result.solid;
+    result.material = material_of(std::move(material));
+    const std::size_t base = builder_.positions.size();
+    for (const Vec3d& p : result.points) {
+      const glm::dvec3 q = glm::dvec3(matrix * glm::dvec4(to_glm(p), 1));
+      builder_.positions.push_back(from_glm(q));
+    }
+    bases_.push_back({base, builder_.texcoords.size(), glm::determinant(glm::dmat3(matrix)) < 0});
+    builder_.texcoords.insert(builder_.texcoords.end(), result.uvs.begin(), result.uvs.end());
+    result.points = {};
+    shapes_.push_back(std::move(result));
+  }
+
+  // Returns the index of a material that is the same in all that is read. Those of different names
+  // are kept apart, as in other formats.
+  std::uint32_t material_of(RawMaterial&& material) {
+    const auto next = static_cast<std::uint32_t>(builder_.materials.size());
+    const auto [at, is_new] = material_ids_.try_emplace(key_of(material), next);
+    if (!is_new) return at->second;
+    if (material.name.empty()) material.name = fmt::format("material{}", next);
+    if (!is_reflectance(material.diffuse)) {
+      builder_.defects.add(DefectKind::reflectance_beyond_one, [&] {
+        return fmt::format("{}: material '{}'", builder_.file, material.name);
+      });
+    }
+    builder_.materials.push_back(std::move(material));
+    return next;
+  }
+
+  void face_set(Shape& shape) {
+    fields([&](std::string_view name) {
+      if (name == "coordIndex") return shape.corners = indices(), true;
+      if (name == "texCoordIndex") return shape.uv_corners = indices(), true;
+      if (name == "ccw") return shape.clockwise = next() == "FALSE", true;
+      if (name == "solid") return shape.solid = next() == "TRUE", true;
+      if (name != "coord" && name != "texCoord") return false;
+      const bool uv = name == "texCoord";
+      read_node(next(), [&](std::string_view, std::string_view) { points(uv, shape); });
+      return true;
+    });
+  }
+
+  void points(bool uv, Shape& shape) {
+    fields([&](std::string_view field) {
+      if (field != "point") return false;
+      const auto values = list(uv ? 2 : 3);
+      for (std::size_t i = 0; !uv && i < values.size(); i += 3) {
+        shape.points.push_back({values[i], values[i + 1], values[i + 2]});
+      }
+      for (std::size_t i = 0; uv && i < values.size(); i += 2) {
+        shape.uvs.push_back({float(values[i]), float(values[i + 1])});
+      }
+      return true;
+    });
+  }
+
+  void finish() {
+    for (Vec3d& p : builder_.positions) p = from_glm(origin_ + to_glm(p));
+    if (auto& view = builder_.view) view->position = from_glm(origin_ + to_glm(view->position));
+    builder_.check_positions(
+        [&](std::size_t i) { return fmt::format("{}: vertex {}", builder_.file, i); });
+    for (std::size_t i = 0; i < shapes_.size(); ++i) {
+      add_faces(shapes_[i], i);
+      shapes_[i] = {};
+    }
+  }
+
+  void add_faces(const Shape& shape, std::size_t number) {
+    builder_.material = shape.material;
+    builder_.object = static_cast<std::uint32_t>(number);
+    builder_.objects.push_back(fmt::format("shape{}", number));
+    const Base& base = bases_[number];
+    const auto& own = shape.uv_corners.empty() ? shape.corners : shape.uv_corners;
+    const bool textured = !shape.uvs.empty();
+    std::vector<std::int64_t> vertices, uvs;
+    std::size_t face = 0;
+    for (std::size_t k = 0; k <= shape.corners.size(); ++k) {
+      if (k < shape.corners.size() && shape.corners[k] != -1) {
+        // An index beyond its own list must not reach into the next shape's.
+        const std::size_t points = base.points(builder_, bases_, number);
+        vertices.push_back(index(shape.corners[k], points, base.position));
+        const std::int32_t uv = textured && k < own.size() ? own[k] : kNoIndex;
+        uvs.push_back(index(uv, shape.uvs.size(), base.texcoord));
+        continue;
+      }
+      if (vertices.empty()) continue;
+      if (base.mirrored != shape.clockwise) {
+        std::reverse(vertices.begin(), vertices.end());
+        std::reverse(uvs.begin(), uvs.end());
+      }
+      builder_.add_face(
+          {vertices, std::span<const std::int64_t>(uvs).first(textured ? uvs.size() : 0)},
+          [&] { return fmt::format("{}: shape {} face {}", builder_.file, number, face); });
+      ++face;
+      vertices.clear();
+      uvs.clear();
+    }
+  }
+
+  static std::int64_t index(std::int32_t value, std::size_t count, std::size_t base) {
+    return value >= 0 && std::size_t(value) < count ? value + std::int64_t(base) : -1;
+  }
+
+  struct Base {
+    std::size_t position = 0, texcoord = 0;
+    bool mirrored = false;
+
+    std::size_t points(const SceneBuilder& builder, const std::vector<Base>& all,
+                       std::size_t number) const {
+      const std::size_t end =
+          number + 1 < all.size() ? all[number + 1].position : builder.positions.size();
+      return end - position;
+    }
+  };
+
+  SceneBuilder& builder_;
+  const Context& context_;
+  glm::dvec3 origin_{0};
+  std::vector<Shape> shapes_;
+  std::vector<Base> bases_;
+  std::map<decltype(key_of({})), std::uint32_t> material_ids_;
+};
+
+}  // namespace
+
+Status read_vrml(const fs::path& path, SceneBuilder& builder, const Context& context) {
+  auto text = read_text_or_gzip(path);
+  if (!text.ok()) return text.status();
+  return VrmlParser(*text, builder, context).run();
+}
+
+}  // namespace atlas
