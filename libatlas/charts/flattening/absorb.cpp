@@ -56,10 +56,6 @@ constexpr double kWorth = 2.5, kFragmentWorth = 4;
 // 1600 unions this spares 260, with a seventh of the time, none of which would have succeeded (90
 // meshes).
 constexpr double kSureFill = 0.995;
-// Charts that meet along creases, as the sides of a box, were judged well enough by merging. They
-// are not tried if the weight of their seam is below this share of its length, except for small
-// charts and fragments.
-constexpr double kHidden = 0.5;
 // Charts are not joined if the two shapes of their common border differ by more than kMostMisfit of
 // its length. A border of fragments with fewer than kLeastFitted edges says little, so its limit is
 // kMostShortMisfit; between charts that are not fragments, none of 72 and 55 pairs with a short
@@ -216,8 +212,6 @@ class Absorber {
     const double most = small(k) ? kMostSmallMisfit : said ? kMostMisfit : kMostShortMisfit;
     const double length = density(k, neighbour.chart);
     if (joint.motion().misfit > most * room_ * length) return false;
-    const Seam seam = seam_of(neighbour.edges);
-    if (!small(k) && !fragment && seam.weight < kHidden * seam.length) return false;
     const double covered = a.distortion.uv_area + b.distortion.uv_area;
     const Outline &around_a = outline(k), &around_b = outline(neighbour.chart);
     const Extent extent{covered / kSureFill, joint.box(around_a, around_b)};
@@ -310,7 +304,7 @@ class Absorber {
     // The multiple of the seam's worth that the union may cost.
     const double times = a.fragment || b.fragment ? kFragmentWorth : kWorth;
     const double worth =
-        times * seam_worth_ * seam_of(neighbour.edges).weight * std::sqrt(piece_area(k));
+        times * seam_worth_ * seam_weight(neighbour.edges) * std::sqrt(piece_area(k));
     return (area_[k] + area_[into]) * both.excess() <=
            area_[k] * a.excess() + area_[into] * b.excess() + worth;
   }
@@ -333,16 +327,12 @@ class Absorber {
     return box > 0 ? chart.distortion.uv_area / box : 1;
   }
 
-  struct Seam {
-    double length = 0, weight = 0;  // weight: creases count less, since they hide the seam
-  };
-  Seam seam_of(std::span<const BorderEdge> edges) const {
-    Seam seam;
-    for (const BorderEdge& edge : edges) {
-      seam.length += edge.length;
-      seam.weight += border_weight(topology_, edge.half_edge, crease_cosine_);
-    }
-    return seam;
+  // Creases count less, since they hide a seam.
+  double seam_weight(std::span<const BorderEdge> edges) const {
+    double weight = 0;
+    for (const BorderEdge& edge : edges)
+      weight += border_weight(topology_, edge.half_edge, crease_cosine_);
+    return weight;
   }
 
   void measure_areas() {
