@@ -57,12 +57,8 @@ constexpr double kWorth = 2.5, kFragmentWorth = 4;
 // meshes).
 constexpr double kSureFill = 0.995;
 // Charts are not joined if the two shapes of their common border differ by more than kMostMisfit of
-// its length. A border of fragments with fewer than kLeastFitted edges says little, so its limit is
-// kMostShortMisfit; between charts that are not fragments, none of 72 and 55 pairs with a short
-// border and more misfit could be joined. Small charts have many neighbours to try, so their limit
-// is stricter.
-constexpr double kMostMisfit = 0.1, kMostShortMisfit = 0.25;
-constexpr double kMostSmallMisfit = 0.07;
+// its length. Small charts have many neighbours to try, so their limit is stricter.
+constexpr double kMostMisfit = 0.1, kMostSmallMisfit = 0.07;
 // A union of at least kManyTriangles is not tried if its parts overlap in kMostOverlap places
 // before it is solved for. Of 13 000 unions 750 were like that; 15 of these succeeded, and they
 // took 38 % of the time of all failures (208 meshes).
@@ -71,7 +67,6 @@ constexpr std::size_t kManyTriangles = 250, kMostOverlap = 16;
 // length is tried. Runs below kLeastRun of the smaller chart's border would leave about as much
 // seam as before.
 constexpr double kMostRunMisfit = 0.03, kLeastRun = 0.1;
-constexpr std::size_t kLeastFitted = 8;  // edges
 // If a union has more than kLittle times the triangles of its smaller part, the larger part keeps
 // its uvs except around the smaller one. That costs half as much per triangle, and saves a quarter
 // of the time for all unions.
@@ -207,9 +202,7 @@ class Absorber {
   // Whether two charts may become one, as far as can be known without trying.
   bool promising(std::uint32_t k, const ChartNeighbour& neighbour, const Joint& joint) {
     const FlatChart &a = charts_[k], &b = charts_[neighbour.chart];
-    const bool fragment = a.fragment || b.fragment;
-    const bool said = neighbour.edges.size() >= kLeastFitted || !fragment;
-    const double most = small(k) ? kMostSmallMisfit : said ? kMostMisfit : kMostShortMisfit;
+    const double most = small(k) ? kMostSmallMisfit : kMostMisfit;
     const double length = density(k, neighbour.chart);
     if (joint.motion().misfit > most * room_ * length) return false;
     const double covered = a.distortion.uv_area + b.distortion.uv_area;
