@@ -213,8 +213,8 @@ class ChartJob {
   }
 
   // Whether the banks of cuts cross in so many places that the chart is given up. Closing some
-  // cuts hardly ever saved such a chart; neither did further
-  // cuts if it is still beyond the bound (1 of 24; 160 meshes).
+  // cuts hardly ever saved such a chart; neither did further cuts if it is still beyond the bound
+  // (1 of 24; 160 meshes).
   bool hopeless(int cuts) const {
     const std::size_t crossings = std::max(result_.crossings.size(), crossings_left().size());
     return noisy() && (result_.within_bound || cuts >= kTelling) && !result_.injective &&
