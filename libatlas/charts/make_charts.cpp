@@ -9,7 +9,6 @@
 #include "libatlas/charts/filling/limbs.h"
 #include "libatlas/charts/filling/long_charts.h"
 #include "libatlas/charts/flattening/flatten.h"
-#include "libatlas/charts/flattening/slits.h"
 #include "libatlas/charts/given_uvs.h"
 #include "libatlas/charts/mesh/noise.h"
 #include "libatlas/charts/mesh/topology.h"
@@ -64,7 +63,6 @@ std::vector<FlatChart> cut_charts(const Work& work, const Context& context, Char
   const FlattenInput input{work.topology, work.mesh.density, work.options, none};
   cut_limbs(input, cut.charts, context);
   cut_long_charts(input, cut.charts, context);
-  close_slits(work.topology, cut.charts, context);
   set.timing.limbs_cpu = watch.lap();
   return std::move(cut.charts);
 }

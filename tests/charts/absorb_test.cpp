@@ -128,19 +128,5 @@ TEST(Absorb, SmallEndsOfTubesBecomePetals) {
   EXPECT_EQ(charts_of_closed_tube(3), 2u);
 }
 
-// Two sides of a box that meet at an edge.
-TEST(Absorb, CreasesStaySeams) {
-  for (const double degrees : {10.0, 90.0}) {
-    const Shape shape = bent(6, 3, [=](double u, double v) {
-      const double x = 2 * u - 1, a = degrees * M_PI / 180;
-      return x < 0 ? Vec3f{float(x), float(v), 0}
-                   : Vec3f{float(x * std::cos(a)), float(v), float(-x * std::sin(a))};
-    });
-    std::vector<std::uint32_t> charts;
-    for (std::uint32_t t = 0; t < shape.triangle_count(); ++t) charts.push_back(t / 2 % 6 >= 3);
-    EXPECT_EQ(flatten(shape, charts, {}).charts.size(), degrees < 40 ? 1u : 2u) << degrees;
-  }
-}
-
 }  // namespace
 }  // namespace atlas::test

@@ -5,11 +5,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <tuple>
 #include <utility>
 
 #include "libatlas/charts/flattening/chart_job.h"
-#include "libatlas/charts/flattening/newcomers.h"
 #include "libatlas/charts/flattening/split.h"
 #include "tests/charts/chart_checks.h"
 
@@ -53,27 +51,6 @@ Shape wavy_ramp(double wave, int columns = kColumns) {
 Shape spiked_ramp(double spike, int columns) {
   return ramp(columns, 2,
               [=](int a, int b) { return b == kRows / 2 && a % 60 == 30 ? spike / kRows : 0; });
-}
-
-// Assigns `rounds` charts of almost one turn of the ramp each, from chart 0 on. Each has a tooth of
-// `length` columns and `width` rows at its end, in other rows than the next chart's tooth. The
-// tooth reaches beyond the chart's own beginning and into the next chart. There is one more chart
-// before these and one after them.
-std::vector<std::uint32_t> toothed(int length, int width, int rounds = 1, int columns = kColumns) {
-  constexpr int kFirst = 10, kLong = kTurn - 1;
-  std::vector<std::uint32_t> charts;
-  for (int a = 0; a < columns; ++a) {
-    for (int b = 0; b < kRows; ++b) {
-      int chart = a < kFirst ? rounds + 1 : std::min(rounds, (a - kFirst) / kLong);
-      for (int r = 0; r < rounds; ++r) {
-        const int begin = kFirst + (r + 1) * kLong, row = 2 + 2 * r;
-        const bool tooth = a >= begin && a < begin + length && b >= row && b < row + width;
-        if (tooth) chart = r;
-      }
-      charts.insert(charts.end(), 2, std::uint32_t(chart));
-    }
-  }
-  return charts;
 }
 
 // A mesh with charts, and what is needed to flatten one of them.
@@ -141,158 +118,6 @@ double change(const Triangle2& a, const Triangle2& b) {
 Triangle2 corners_of(const FlatChart& chart, std::size_t i) {
   const auto& v = chart.corners[i];
   return {chart.uvs[v[0]], chart.uvs[v[1]], chart.uvs[v[2]]};
-}
-
-TEST(ChartJob, NamesTheTrianglesThatShouldGo) {
-  Bench bench(wavy_ramp(0.05), toothed(5, 2));
-  const ChartOutcome outcome = bench.flatten(0);
-  const std::vector<std::uint32_t> own = bench.triangles(0);
-  EXPECT_TRUE(outcome.failed);
-  EXPECT_GT(outcome.crossings, 0u);
-  ASSERT_FALSE(outcome.remove.empty());
-  EXPECT_LT(outcome.remove.size(), own.size() / 20);
-  EXPECT_EQ(outcome.uvs.size(), 3 * own.size());
-  // All are near the tooth or where it overlaps the chart, and none is listed twice.
-  std::vector<std::uint32_t> remove = outcome.remove;
-  std::sort(remove.begin(), remove.end());
-  EXPECT_EQ(std::adjacent_find(remove.begin(), remove.end()), remove.end());
-  for (const std::uint32_t t : remove) {
-    const int column = int(t) / (2 * kRows);
-    EXPECT_TRUE(column < 20 || column > kTurn) << column;
-  }
-  // With more rings around the crossings there are more triangles, and these include the first
-  // ones.
-  Bench again(wavy_ramp(0.05), toothed(5, 2));
-  std::vector<std::uint32_t> more = again.flatten(0, {.rings = 2}).remove;
-  std::sort(more.begin(), more.end());
-  EXPECT_GT(more.size(), remove.size());
-  EXPECT_TRUE(std::includes(more.begin(), more.end(), remove.begin(), remove.end()));
-}
-
-// The tooth goes to the following chart. Nothing is divided and nothing is lost.
-TEST(ChartJob, WhatCrossesGoesToTheNeighbours) {
-  for (const auto& [wave, length, width] : {std::tuple{0.05, 5, 1}, std::tuple{0.02, 5, 2},
-                                            std::tuple{0.0, 5, 2}, std::tuple{0.0, 2, 3}}) {
-    Bench bench(wavy_ramp(wave), toothed(length, width));
-    const std::size_t before = bench.triangles(0).size();
-    const FlattenResult result = flatten_charts(bench.input(), bench.partition, {});
-    EXPECT_EQ(result.split_charts(), 0u) << length << ' ' << width;
-    ASSERT_EQ(result.charts.size(), 3u) << length << ' ' << width;
-    std::size_t all = 0, largest = 0;
-    for (const FlatChart& chart : result.charts) {
-      all += chart.triangles.size();
-      largest = std::max(largest, chart.triangles.size());
-      EXPECT_EQ(chart.distortion.flips, 0u);
-      EXPECT_LE(chart.distortion.stretch_999, 1.25);
-    }
-    EXPECT_EQ(all, bench.topology.triangle_count());
-    EXPECT_LT(largest, before);
-    EXPECT_GT(largest, before - before / 20);
-  }
-}
-
-// After losing triangles, a chart continues from the uvs that it had.
-TEST(ChartJob, GoesOnFromItsUvsWhenTrianglesAreGone) {
-  Bench bench(wavy_ramp(0.05), toothed(5, 2));
-  const std::vector<std::uint32_t> before = bench.triangles(0);
-  const ChartOutcome first = bench.flatten(0);
-  ASSERT_EQ(first.uvs.size(), 3 * before.size());
-  std::vector<Vec2d> kept;
-  std::vector<Triangle2> was;
-  for (std::size_t i = 0; i < before.size(); ++i) {
-    const std::uint32_t t = before[i];
-    if (int(t) / (2 * kRows) >= 10 + kTurn - 1) {  // it belongs to the tooth
-      bench.partition.chart[t] = 2;
-      continue;
-    }
-    kept.insert(kept.end(), &first.uvs[3 * i], &first.uvs[3 * i] + 3);
-    was.push_back({first.uvs[3 * i], first.uvs[3 * i + 1], first.uvs[3 * i + 2]});
-  }
-  const ChartOutcome resumed = bench.flatten(0, {.resumed = kept});
-  ASSERT_TRUE(resumed.parts.empty());
-  ASSERT_EQ(resumed.flat.corners.size(), was.size());
-  // The chart keeps the area of its surface, which has lost that of the tooth.
-  const double scale = size_of(corners_of(resumed.flat, 0)) / size_of(was[0]);
-  for (std::size_t i = 0; i < was.size(); ++i) {
-    EXPECT_LT(change(scaled(was[i], scale), corners_of(resumed.flat, i)), 1e-9) << i;
-  }
-}
-
-// Triangles that come back are placed beside the rest, which stays as it is.
-TEST(ChartJob, LaysWhatItGotBesideWhatItHad) {
-  constexpr int kShort = 90;
-  Bench bench(wavy_ramp(0.05, kShort), std::vector<std::uint32_t>(2 * kRows * kShort, 0));
-  const std::vector<std::uint32_t> all = bench.triangles(0);
-  const ChartOutcome first = bench.flatten(0);
-  ASSERT_TRUE(first.parts.empty());
-  std::vector<Vec2d> kept;
-  std::vector<std::uint8_t> newcomer;
-  for (std::size_t i = 0; i < all.size(); ++i) {
-    newcomer.push_back(i / (2 * kRows) >= kShort - 4 && i % (2 * kRows) < kRows);
-    for (const std::uint32_t v : first.flat.corners[i]) {
-      kept.push_back(newcomer[i] ? unplaced() : first.flat.uvs[v]);
-    }
-  }
-  const ChartOutcome grown = bench.flatten(0, {.resumed = kept, .little = true});
-  ASSERT_TRUE(grown.parts.empty());
-  EXPECT_EQ(grown.flat.distortion.flips, 0u);
-  EXPECT_LE(grown.flat.distortion.stretch_999, 1.25);
-  const double scale = size_of(corners_of(grown.flat, 0)) / size_of(corners_of(first.flat, 0));
-  std::size_t moved = 0;
-  for (std::size_t i = 0; i < all.size(); ++i) {
-    const Triangle2 was = scaled(corners_of(first.flat, i), scale);
-    if (newcomer[i]) {
-      moved += change(was, corners_of(grown.flat, i)) > 1e-9;
-    } else {
-      EXPECT_LT(change(was, corners_of(grown.flat, i)), 1e-9) << i;
-    }
-  }
-  EXPECT_GT(moved, 0u);
-}
-
-// Does the same for a job that is interrupted between two rounds. What is left of the chart is in
-// its list of triangles, each with its own uvs.
-TEST(ChartJob, RoundsGoOnFromTheLast) {
-  Bench once(wavy_ramp(0.05), toothed(4, 1)), rounds(wavy_ramp(0.05), toothed(4, 1));
-  const std::vector<std::uint32_t> before = once.triangles(0);
-  const ChartOutcome first = once.flatten(0);
-  ASSERT_EQ(first.uvs.size(), 3 * before.size());
-  const FlattenResult result = flatten_charts(rounds.input(), rounds.partition, {});
-  const auto kept = std::max_element(result.charts.begin(), result.charts.end(),
-                                     [](const FlatChart& a, const FlatChart& b) {
-                                       return a.triangles.size() < b.triangles.size();
-                                     });
-  double scale = 0;
-  std::size_t same = 0;
-  for (std::size_t i = 0; i < kept->triangles.size(); ++i) {
-    const auto at = std::lower_bound(before.begin(), before.end(), kept->triangles[i]);
-    if (at == before.end() || *at != kept->triangles[i]) continue;
-    const std::size_t k = 3 * std::size_t(at - before.begin());
-    const Triangle2 was{first.uvs[k], first.uvs[k + 1], first.uvs[k + 2]};
-    if (scale == 0) scale = size_of(corners_of(*kept, i)) / size_of(was);
-    same += change(scaled(was, scale), corners_of(*kept, i)) < 1e-9;
-  }
-  EXPECT_EQ(same, kept->triangles.size());
-}
-
-// Two charts that cross themselves hand over triangles. The first gives some to the second, which
-// then needs other uvs than before.
-TEST(ChartJob, ChartsThatGetTrianglesComeOutWhole) {
-  const int columns = 10 + 2 * (kTurn - 1) + 40;
-  for (const double wave : {0.0, 0.05}) {
-    for (const auto& [length, width] : {std::pair{3, 2}, std::pair{5, 1}, std::pair{8, 1}}) {
-      Bench bench(wavy_ramp(wave, columns), toothed(length, width, 2, columns));
-      const FlattenResult result = flatten_charts(bench.input(), bench.partition, {});
-      std::size_t all = 0;
-      for (const FlatChart& chart : result.charts) {
-        all += chart.triangles.size();
-        EXPECT_EQ(chart.distortion.flips, 0u);
-        EXPECT_LE(chart.distortion.stretch_999, 1.25);
-      }
-      EXPECT_EQ(all, bench.topology.triangle_count());
-      EXPECT_LE(result.split_charts(), 2u) << length << ' ' << width;
-    }
-  }
 }
 
 // Spikes stretch beyond the bound until they are cut open. Where the border crosses itself, too, no
@@ -363,30 +188,6 @@ TEST(ChartJob, ALittlePartLeavesALargeOneAsItIs) {
       } else {
         EXPECT_GT(most, 1e-5) << stretch;
       }
-    }
-  }
-}
-
-// Of the two triangles of a crossing, the one with fewer neighbours is removed, with the given
-// number of rings around it.
-TEST(ChartJob, TheLooserSideOfACrossingGoes) {
-  Bench bench(grid(6, 6), std::vector<std::uint32_t>(72, 0));
-  LocalChart& chart = bench.scratch.chart;
-  const std::vector<std::uint32_t> all = bench.triangles(0);
-  chart.build(bench.topology, bench.partition, all);
-  const auto degree = [&](std::uint32_t t) {
-    int count = 0;
-    for (std::uint32_t h = 3 * t; h < 3 * t + 3; ++h) count += chart.opposite[h] != kNoIndex;
-    return count;
-  };
-  for (std::uint32_t a = 0; a < 72; a += 5) {
-    for (std::uint32_t b = 0; b < 72; b += 7) {
-      const std::vector<BorderCrossing> crossings{{{}, {}, a, b}};
-      const auto one = around_crossings(chart, crossings, 0);
-      ASSERT_EQ(one.size(), 1u);
-      EXPECT_EQ(one[0], degree(b) < degree(a) ? b : a);
-      const auto ring = around_crossings(chart, crossings, 1);
-      EXPECT_EQ(ring.size(), 1u + std::size_t(degree(one[0])));
     }
   }
 }

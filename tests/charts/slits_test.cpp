@@ -5,80 +5,11 @@
 #include <cmath>
 #include <map>
 
-#include "libatlas/charts/flattening/slits.h"
 #include "libatlas/charts/flattening/split.h"
 #include "tests/charts/chart_checks.h"
 
 namespace atlas::test {
 namespace {
-
-// A flat grid of n x n quads as one chart. It is cut open along x = 1/2 from the border at y = 0 to
-// the middle; the right side of the slit lies `gap` beside the left one.
-struct SlitGrid {
-  Topology topology;
-  std::vector<FlatChart> charts{1};
-
-  SlitGrid(int n, double gap) {
-    const Mesh mesh(grid(n, n));
-    Result<Topology> built = build_topology(mesh.view(), {}, {});
-    EXPECT_TRUE(built.ok());
-    topology = std::move(*built);
-    FlatChart& chart = charts[0];
-    chart.size = {1, 1};
-    std::map<std::pair<std::uint32_t, bool>, std::uint32_t> names;
-    for (std::uint32_t t = 0; t < topology.triangle_count(); ++t) {
-      const bool right = int(t / 2) % n >= n / 2;
-      chart.triangles.push_back(t);
-      chart.corners.push_back({});
-      for (std::uint32_t c = 0; c < 3; ++c) {
-        const std::uint32_t v = topology.corner_vertex[3 * t + c];
-        const Vec3f p = mesh.positions[topology.source_vertex[v]];
-        const bool bank = right && p.x == 0.5f && p.y < 0.5f;
-        const auto [it, fresh] = names.try_emplace({v, bank}, chart.uvs.size());
-        if (fresh) {
-          chart.uvs.push_back({p.x + (bank ? gap : 0), p.y});
-          chart.vertex.push_back(v);
-        }
-        chart.corners.back()[c] = it->second;
-      }
-    }
-  }
-};
-
-TEST(Slits, CloseWhereBanksCoincide) {
-  SlitGrid grid(8, 1e-9);
-  ASSERT_EQ(grid.charts[0].uvs.size(), 81u + 4);
-  EXPECT_EQ(close_slits(grid.topology, grid.charts, {}), 1u);
-  const FlatChart& chart = grid.charts[0];
-  ASSERT_EQ(chart.uvs.size(), 81u);
-  ASSERT_EQ(chart.vertex.size(), 81u);
-  for (std::size_t i = 0; i < chart.triangles.size(); ++i) {
-    for (std::uint32_t c = 0; c < 3; ++c) {
-      EXPECT_EQ(chart.vertex[chart.corners[i][c]],
-                grid.topology.corner_vertex[3 * chart.triangles[i] + c]);
-    }
-  }
-}
-
-TEST(Slits, StayWhereBanksAreApartOrCross) {
-  for (const double gap : {1e-3, 1e-6, -1e-3}) {
-    SlitGrid grid(8, gap);
-    EXPECT_EQ(close_slits(grid.topology, grid.charts, {}), 0u);
-    EXPECT_EQ(grid.charts[0].uvs.size(), 81u + 4);
-  }
-}
-
-// Slits are only closed if the chart is injective afterwards. Here one of its triangles is folded
-// over.
-TEST(Slits, StayInAChartThatIsNotInjective) {
-  SlitGrid grid(8, 0);
-  FlatChart& chart = grid.charts[0];
-  for (std::uint32_t i = 0; i < chart.uvs.size(); ++i) {
-    if (chart.uvs[i].x == 0.25 && chart.uvs[i].y == 0.25) chart.uvs[i].x = 0.55;
-  }
-  EXPECT_EQ(close_slits(grid.topology, grid.charts, {}), 0u);
-  EXPECT_EQ(chart.uvs.size(), 81u + 4);
-}
 
 TEST(Slits, APlateWithHolesKeepsNone) {
   for (const int holes : {1, 2, 4}) {

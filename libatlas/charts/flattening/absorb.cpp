@@ -56,17 +56,9 @@ constexpr double kWorth = 2.5, kFragmentWorth = 4;
 // 1600 unions this spares 260, with a seventh of the time, none of which would have succeeded (90
 // meshes).
 constexpr double kSureFill = 0.995;
-// Charts that meet along creases, as the sides of a box, were judged well enough by merging. They
-// are not tried if the weight of their seam is below this share of its length, except for small
-// charts and fragments.
-constexpr double kHidden = 0.5;
 // Charts are not joined if the two shapes of their common border differ by more than kMostMisfit of
-// its length. A border of fragments with fewer than kLeastFitted edges says little, so its limit is
-// kMostShortMisfit; between charts that are not fragments, none of 72 and 55 pairs with a short
-// border and more misfit could be joined. Small charts have many neighbours to try, so their limit
-// is stricter.
-constexpr double kMostMisfit = 0.1, kMostShortMisfit = 0.25;
-constexpr double kMostSmallMisfit = 0.07;
+// its length. Small charts have many neighbours to try, so their limit is stricter.
+constexpr double kMostMisfit = 0.1, kMostSmallMisfit = 0.07;
 // A union of at least kManyTriangles is not tried if its parts overlap in kMostOverlap places
 // before it is solved for. Of 13 000 unions 750 were like that; 15 of these succeeded, and they
 // took 38 % of the time of all failures (208 meshes).
@@ -75,7 +67,6 @@ constexpr std::size_t kManyTriangles = 250, kMostOverlap = 16;
 // length is tried. Runs below kLeastRun of the smaller chart's border would leave about as much
 // seam as before.
 constexpr double kMostRunMisfit = 0.03, kLeastRun = 0.1;
-constexpr std::size_t kLeastFitted = 8;  // edges
 // If a union has more than kLittle times the triangles of its smaller part, the larger part keeps
 // its uvs except around the smaller one. That costs half as much per triangle, and saves a quarter
 // of the time for all unions.
@@ -211,13 +202,9 @@ class Absorber {
   // Whether two charts may become one, as far as can be known without trying.
   bool promising(std::uint32_t k, const ChartNeighbour& neighbour, const Joint& joint) {
     const FlatChart &a = charts_[k], &b = charts_[neighbour.chart];
-    const bool fragment = a.fragment || b.fragment;
-    const bool said = neighbour.edges.size() >= kLeastFitted || !fragment;
-    const double most = small(k) ? kMostSmallMisfit : said ? kMostMisfit : kMostShortMisfit;
+    const double most = small(k) ? kMostSmallMisfit : kMostMisfit;
     const double length = density(k, neighbour.chart);
     if (joint.motion().misfit > most * room_ * length) return false;
-    const Seam seam = seam_of(neighbour.edges);
-    if (!small(k) && !fragment && seam.weight < kHidden * seam.length) return false;
     const double covered = a.distortion.uv_area + b.distortion.uv_area;
     const Outline &around_a = outline(k), &around_b = outline(neighbour.chart);
     const Extent extent{covered / kSureFill, joint.box(around_a, around_b)};
@@ -310,7 +297,7 @@ class Absorber {
     // The multiple of the seam's worth that the union may cost.
     const double times = a.fragment || b.fragment ? kFragmentWorth : kWorth;
     const double worth =
-        times * seam_worth_ * seam_of(neighbour.edges).weight * std::sqrt(piece_area(k));
+        times * seam_worth_ * seam_weight(neighbour.edges) * std::sqrt(piece_area(k));
     return (area_[k] + area_[into]) * both.excess() <=
            area_[k] * a.excess() + area_[into] * b.excess() + worth;
   }
@@ -333,16 +320,12 @@ class Absorber {
     return box > 0 ? chart.distortion.uv_area / box : 1;
   }
 
-  struct Seam {
-    double length = 0, weight = 0;  // weight: creases count less, since they hide the seam
-  };
-  Seam seam_of(std::span<const BorderEdge> edges) const {
-    Seam seam;
-    for (const BorderEdge& edge : edges) {
-      seam.length += edge.length;
-      seam.weight += border_weight(topology_, edge.half_edge, crease_cosine_);
-    }
-    return seam;
+  // Creases count less, since they hide a seam.
+  double seam_weight(std::span<const BorderEdge> edges) const {
+    double weight = 0;
+    for (const BorderEdge& edge : edges)
+      weight += border_weight(topology_, edge.half_edge, crease_cosine_);
+    return weight;
   }
 
   void measure_areas() {

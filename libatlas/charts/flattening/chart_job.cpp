@@ -4,7 +4,6 @@
 #include <cmath>
 #include <utility>
 
-#include "libatlas/charts/flattening/newcomers.h"
 #include "libatlas/charts/flattening/split.h"
 #include "libatlas/charts/merging/unroll.h"
 #include "libatlas/core/clock.h"
@@ -73,7 +72,6 @@ class ChartJob {
 
   ChartOutcome run() {
     build(task_.triangles);
-    kept_uvs_.assign(task_.resumed.begin(), task_.resumed.end());
     ChartOutcome outcome;
     if (chart_.component_count > 1) {
       outcome.parts = component_parts();
@@ -88,7 +86,6 @@ class ChartJob {
         if (!cut_open_timed(cuts)) break;
         build(task_.triangles);
       }
-      if (!task_.whole && result_.within_bound && !hopeless(0)) list_removable(outcome);
     }
     outcome.parts = task_.whole ? std::vector<std::uint8_t>(1, 0) : halves();
     outcome.failed = true;
@@ -182,17 +179,6 @@ class ChartJob {
     return any;
   }
 
-  // If the border crosses itself in few places, lists the triangles around these, for neighbours to
-  // take.
-  void list_removable(ChartOutcome& outcome) const {
-    if (result_.crossings.empty()) return;
-    outcome.crossings = result_.crossings.size();
-    const auto around = around_crossings(chart_, result_.crossings, task_.rings);
-    if (around.size() > std::max<std::size_t>(2, chart_.triangles().size() / 20)) return;
-    for (const std::uint32_t t : around) outcome.remove.push_back(chart_.triangles()[t]);
-    outcome.uvs = corner_uvs();
-  }
-
   bool noisy() const { return !input_.topology.calm_normals.empty(); }
 
   const std::vector<BorderCrossing>& crossings_left() const {
@@ -227,8 +213,8 @@ class ChartJob {
   }
 
   // Whether the banks of cuts cross in so many places that the chart is given up. Closing some
-  // cuts, or giving triangles to neighbours, hardly ever saved such a chart; neither did further
-  // cuts if it is still beyond the bound (1 of 24; 160 meshes).
+  // cuts hardly ever saved such a chart; neither did further cuts if it is still beyond the bound
+  // (1 of 24; 160 meshes).
   bool hopeless(int cuts) const {
     const std::size_t crossings = std::max(result_.crossings.size(), crossings_left().size());
     return noisy() && (result_.within_bound || cuts >= kTelling) && !result_.injective &&
@@ -295,7 +281,10 @@ class ChartJob {
   ParamResult solve(const LocalMesh& mesh) {
     ParamWorkspace& workspace = scratch_.workspace;
     param::FlattenOptions options = flatten_options(mesh.triangles.size());
-    if (!kept_uvs_.empty() && place_newcomers(mesh, kept_uvs_, start_uvs_)) {
+    if (!kept_uvs_.empty()) {
+      start_uvs_.resize(mesh.positions.size());
+      for (std::size_t i = 0; i < kept_uvs_.size(); ++i)
+        start_uvs_[mesh.triangles[i / 3][i % 3]] = kept_uvs_[i];
       options.aimed_stretch = 0;  // it has been squeezed before
       return param::resume_flattening(mesh, start_uvs_, options, workspace);
     }

@@ -20,31 +20,21 @@ struct ChartScratch {
   std::size_t largest = 0;  // number of triangles of the largest chart so far
 };
 
-// The outcome for one chart: it is flat, or is to be divided, or should lose a few triangles to its
-// neighbours.
+// The outcome for one chart: it is flat, or is to be divided.
 struct ChartOutcome {
   FlatChart flat;
   std::vector<std::uint8_t> parts;  // one per triangle: its part, if the chart is to be divided
-  // Triangles whose removal would help. `parts` is set as well, in case no neighbour takes them.
-  std::vector<std::uint32_t> remove;
-  std::size_t crossings = 0;  // crossings of the border that the removal should undo
-  std::vector<Vec2d> uvs;     // with `remove`, three per triangle: where to continue from
-  bool failed = false;        // the chart could not be flattened as it was
+  bool failed = false;              // the chart could not be flattened as it was
 };
 
 // A chart, how to begin with it, and how much to try.
 struct ChartTask {
   std::span<const std::uint32_t> triangles = {};
-  // Rings of triangles around a crossing of the border that are listed for removal.
-  int rings = 1;
   int cuts = 3;      // rounds of cutting the chart open before it is divided
   int closings = 1;  // how many of these may close cuts whose banks cross
   // Three per triangle, or empty: uvs of the flat parts to be joined (param::FlatParts).
   std::span<const Vec2d> joined = {};
-  // Three per triangle, or empty: the uvs of an earlier attempt within the bound; unplaced()
-  // (newcomers.h) for triangles that the chart has got since.
-  std::span<const Vec2d> resumed = {};
-  // The joined or resumed uvs are one large part and little else, so only the places beyond the
+  // The joined uvs are one large part and little else, so only the places beyond the
   // bound are relaxed.
   bool little = false;
   bool whole = false;  // a failure needs no division: `parts` is then one entry

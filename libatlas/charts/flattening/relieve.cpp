@@ -26,7 +26,6 @@ constexpr double kMostPrice = 0.3;  // of a dart, relative to the chart's energy
 constexpr double kLeastEnergy = 0.04;
 
 constexpr int kMostDarts = 3;
-constexpr double kMostBox = 1.1;  // of the chart's rectangle, relative to the previous one
 // A tip is searched for in the most stretched triangles that together have this share of the
 // energy.
 constexpr double kStretchedPart = 0.5;
@@ -97,7 +96,7 @@ class Reliever {
       ChartOutcome outcome = flatten_chart(
           input_, partition_, {.triangles = chart.triangles, .cuts = 0, .whole = true}, scratch);
       for (const std::uint32_t h : dart) partition_.close(h);
-      if (!outcome.parts.empty() || outcome.flat.box_area() > kMostBox * chart.box_area()) continue;
+      if (!outcome.parts.empty()) continue;
       const double cost = energy(k, outcome.flat) + price;
       if (cost >= least) continue;
       least = cost;

@@ -4,7 +4,6 @@
 #include <functional>
 #include <limits>
 #include <queue>
-#include <utility>
 
 #include "libatlas/core/glm_bridge.h"
 
@@ -99,12 +98,6 @@ std::uint32_t farthest_from(const Topology& topology, const LocalChart& chart,
   return farthest;
 }
 
-int neighbours(const LocalChart& chart, std::uint32_t t) {
-  int count = 0;
-  for (std::uint32_t h = 3 * t; h < 3 * t + 3; ++h) count += chart.opposite[h] != kNoIndex;
-  return count;
-}
-
 }  // namespace
 
 std::array<std::uint32_t, 2> far_pair(const Topology& topology, const LocalChart& chart) {
@@ -115,30 +108,6 @@ std::array<std::uint32_t, 2> far_pair(const Topology& topology, const LocalChart
 std::vector<std::uint8_t> divide(const Topology& topology, const LocalChart& chart,
                                  std::span<const std::uint32_t> seeds) {
   return Regions(topology, chart, seeds).take_owners();
-}
-
-std::vector<std::uint32_t> around_crossings(const LocalChart& chart,
-                                            std::span<const BorderCrossing> crossings, int rings) {
-  std::vector<std::uint32_t> around;
-  std::vector<std::uint8_t> listed(chart.triangles().size(), 0);
-  const auto add = [&](std::uint32_t t) {
-    if (std::exchange(listed[t], 1)) return;
-    around.push_back(t);
-  };
-  for (const BorderCrossing& crossing : crossings) {
-    const bool b = neighbours(chart, crossing.triangle_b) < neighbours(chart, crossing.triangle_a);
-    std::size_t begin = around.size();
-    add(b ? crossing.triangle_b : crossing.triangle_a);
-    for (int ring = 0; ring < rings; ++ring) {
-      const std::size_t end = around.size();
-      for (; begin < end; ++begin) {
-        for (std::uint32_t h = 3 * around[begin]; h < 3 * around[begin] + 3; ++h) {
-          if (chart.opposite[h] != kNoIndex) add(chart.opposite[h] / 3);
-        }
-      }
-    }
-  }
-  return around;
 }
 
 }  // namespace atlas

@@ -1,4 +1,4 @@
-// Internal: ways to make a chart flatten: cutting it open, dividing it, or removing triangles.
+// Internal: ways to make a chart flatten: cutting it open, or dividing it.
 #pragma once
 
 #include <array>
@@ -21,12 +21,6 @@ std::array<std::uint32_t, 2> far_pair(const Topology& topology, const LocalChart
 // triangles of each label are connected.
 std::vector<std::uint8_t> divide(const Topology& topology, const LocalChart& chart,
                                  std::span<const std::uint32_t> seeds);
-
-// Returns the local triangles around each crossing that may go to other charts to remove it. For
-// each crossing these are the one of its two triangles with fewer neighbours, and `rings` rings of
-// triangles around that.
-std::vector<std::uint32_t> around_crossings(const LocalChart& chart,
-                                            std::span<const BorderCrossing> crossings, int rings);
 
 // Joins boundary loops of a connected chart to its first loop and those joined to that, nearest
 // first, by shortest paths along edges (creases count less). The half-edges of the paths become

@@ -78,8 +78,7 @@ struct FanSolver::Kernels {
     }
     const Products p = multiply(own, own, begin, i);
     double* const corner = own + 2 * i;
-    // In a connected chart without held vertices the last pivot is mere rounding, so that vertex is
-    // held.
+    // In a connected chart the last pivot is mere rounding, so that vertex is held.
     const auto invert = [&](double pivot, double diagonal, std::uint32_t at) {
       const bool held = at + 1 >= factor.count || !(pivot > kNoPivot * diagonal);
       return held ? 0 : 1 / std::sqrt(pivot);
@@ -269,7 +268,7 @@ FanSolver::Factor FanSolver::factor() {
           factor_.data(),
           inverse_pivot_.data(),
           static_cast<std::uint32_t>(first_.size()),
-          held_ > 0 ? count_ + 1 : count_};
+          count_};
 }
 
 FanSolver::Fan FanSolver::scratch_fan() {
@@ -283,17 +282,14 @@ FanSolver::Fan FanSolver::scratch_fan() {
   return fan;
 }
 
-void FanSolver::factorize(const JoinedFans& joined, std::size_t first_held,
-                          std::span<const Vec2d> uvs) {
+void FanSolver::factorize(const JoinedFans& joined, std::size_t vertex_count) {
   joined_ = joined;
-  count_ = row_of(static_cast<std::uint32_t>(first_held));
-  held_ = uvs.empty() ? 0 : uvs.size() - first_held;
+  count_ = row_of(static_cast<std::uint32_t>(vertex_count));
   find_envelope();
   factor_.assign(row_.back(), 0);
-  held_load_.assign(held_ > 0 ? count_ : 0, Vec2d{});
   rows_.resize(longest_);
   columns_.resize(longest_);
-  for (std::size_t c = 0; c < joined.cells.size(); ++c) fill(c, uvs);
+  for (std::size_t c = 0; c < joined.cells.size(); ++c) fill(c);
   inverse_pivot_.resize(2 * first_.size());
   scratch_.resize(7 * longest_);
   (has_wide_vectors ? Kernels::eliminate_wide : Kernels::eliminate_narrow)(factor());
@@ -310,9 +306,8 @@ void FanSolver::find_envelope() {
       low = std::min(low, row_of(joined_.triangles[i].a));
     }
     for (std::uint32_t i = joined_.first[c]; i < joined_.first[c + 1]; ++i) {
-      const std::uint32_t row = row_of(joined_.triangles[i].a);
-      if (row >= count_) continue;
-      first_[row / 2] = std::min(first_[row / 2], low / 2 * 2);
+      std::uint32_t& first = first_[row_of(joined_.triangles[i].a) / 2];
+      first = std::min(first, low / 2 * 2);
     }
     longest = std::max(longest, joined_.first[c + 1] - joined_.first[c]);
   }
@@ -323,7 +318,7 @@ void FanSolver::find_envelope() {
 }
 
 // Adds the stiffness of one fan, with its centre eliminated.
-void FanSolver::fill(std::size_t place, std::span<const Vec2d> uvs) {
+void FanSolver::fill(std::size_t place) {
   const auto* const fan = &joined_.triangles[joined_.first[place]];
   const auto n = joined_.first[place + 1] - joined_.first[place];
   if (n == 0) return;
@@ -332,18 +327,9 @@ void FanSolver::fill(std::size_t place, std::span<const Vec2d> uvs) {
   for (std::uint32_t i = 0; i < n; ++i) {
     const std::uint32_t row = row_of(fan[i].a), pair = row / 2;
     columns_[i] = row / 2 * 4 + row % 2;
-    rows_[i] = row >= count_
-                   ? nullptr
-                   : factor_.data() + row_[pair] - 2 * std::size_t{first_[pair]} + row % 2 * 2;
+    rows_[i] = factor_.data() + row_[pair] - 2 * std::size_t{first_[pair]} + row % 2 * 2;
   }
-  const auto hold = [&](std::uint32_t i, std::uint32_t held, double value) {
-    if (!rows_[i]) return;
-    Vec2d& load = held_load_[row_of(fan[i].a)];
-    const Vec2d at = uvs[fan[held].a];
-    load = {load.x - value * at.x, load.y - value * at.y};
-  };
   const auto add = [&](std::uint32_t i, std::uint32_t j, double value) {
-    if (!rows_[i] || !rows_[j]) return rows_[i] ? hold(i, j, value) : hold(j, i, value);
     const std::uint32_t p = columns_[i], q = columns_[j];
     if (p == q) {
       rows_[i][p] += 2 * value;
@@ -353,16 +339,14 @@ void FanSolver::fill(std::size_t place, std::span<const Vec2d> uvs) {
   };
   for (std::uint32_t i = 0; i < n; ++i) {
     const double scaled = coupling[i].centre * inverse;
-    if (rows_[i]) rows_[i][columns_[i]] += coupling[i].own - coupling[i].centre * scaled;
+    rows_[i][columns_[i]] += coupling[i].own - coupling[i].centre * scaled;
     for (std::uint32_t j = 0; j < i; ++j) add(i, j, -scaled * coupling[j].centre);
     add(i, i + 1 == n ? 0 : i + 1, coupling[i].next);
   }
 }
 
 void FanSolver::step(double relaxation, std::span<Vec2d> uvs) {
-  const std::size_t cells = joined_.cells.size();
-  load_.assign(cells + std::max(2 * first_.size(), count_ + held_), Vec2d{});
-  std::copy(held_load_.begin(), held_load_.end(), load_.begin() + std::ptrdiff_t(cells));
+  load_.assign(joined_.cells.size() + 2 * first_.size(), Vec2d{});
   (has_wide_vectors ? Kernels::step_wide : Kernels::step_narrow)(*this, relaxation, uvs.data());
 }
 

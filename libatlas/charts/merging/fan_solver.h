@@ -29,12 +29,7 @@ class FanSolver {
   explicit FanSolver(const Fans& fans) : fans_(fans) {}
 
   // Factorizes the stiffness of these fans, whose data must outlive the following steps.
-  void factorize(const JoinedFans& joined, std::size_t vertex_count) {
-    factorize(joined, vertex_count, {});
-  }
-  // The same with the vertices from `first_held` on held where `uvs` (one per vertex) places them.
-  // If there are any, the free vertices must be joined to some of them.
-  void factorize(const JoinedFans& joined, std::size_t first_held, std::span<const Vec2d> uvs);
+  void factorize(const JoinedFans& joined, std::size_t vertex_count);
   // Makes a local and a global step from `uvs` (one per vertex, in a std::vector), in place. The
   // step is `relaxation` times as long as that to the minimum for the current rotations. Below 2
   // the energy falls (see ArapSolver::iterate).
@@ -46,7 +41,7 @@ class FanSolver {
   struct Kernels;
 
   void find_envelope();
-  void fill(std::size_t place, std::span<const Vec2d> uvs);
+  void fill(std::size_t place);
   Factor factor();
   Fan scratch_fan();
   std::uint32_t row_of(std::uint32_t vertex) const {
@@ -60,12 +55,10 @@ class FanSolver {
   std::vector<std::uint32_t> first_;  // one per pair: its first column
   std::vector<std::size_t> row_;      // where each pair begins
   std::vector<double> factor_, inverse_pivot_;
-  std::uint32_t count_ = 0;       // number of rows without padding
-  std::size_t held_ = 0;          // number of held vertices
-  std::vector<Vec2d> held_load_;  // one per row: its load from held vertices
-  std::vector<Vec2d> load_;       // one per cell, then one per row; the latter become the solution
-  std::vector<double> scratch_;   // for the current fan, see Fan
-  std::size_t longest_ = 0;       // triangles in the largest fan, rounded up to a multiple of four
+  std::uint32_t count_ = 0;      // number of rows without padding
+  std::vector<Vec2d> load_;      // one per cell, then one per row; the latter become the solution
+  std::vector<double> scratch_;  // for the current fan, see Fan
+  std::size_t longest_ = 0;      // triangles in the largest fan, rounded up to a multiple of four
   std::vector<std::uint32_t> columns_;
   std::vector<double*> rows_;
 };

@@ -48,11 +48,6 @@ constexpr double kShapeChange = 0.04;
 // of both halves together, but for rounding. A needle fills half of its rectangle, and so do two
 // needles side by side, as around the tip of a cone.
 constexpr double kNoLarger = 1.001;
-// If at most kLittleChart cells are joined to a chart, with at least kLargeChart cells in all, only
-// the kPatchCells nearest cells descend, since the changes lie around the small part. A wheel whose
-// charts have hundreds of cells is thus merged in 0.7 instead of 1.6 s. 8448 charts of 276 meshes
-// became 8432.
-constexpr std::size_t kLargeChart = 96, kLittleChart = 6, kPatchCells = 40;
 // A crossing is deep beyond this share of the chart's size. Shallower ones may vanish when the
 // chart grows: of 1220 charts that had crossed themselves and were tried again, 9 no longer did. 6
 // of these 9 had been shallow, as had 150 of all 1220 (90 meshes).
@@ -275,23 +270,11 @@ bool Trial::fits_unrolled(TrialOutcome& outcome) {
 // Runs the steps of the descent. Returns false if it was given up early, since it would not have
 // met the limits.
 bool Trial::descend(const TrialLimits& limits, TrialOutcome& outcome) {
-  const std::size_t all = joined_.cells().size();
-  const bool little = all >= kLargeChart && all - joined_.first_count() <= kLittleChart;
-  if (little) {
-    patch_.take(joined_, kPatchCells, uvs_);
-    solver_.factorize(patch_.fans(), patch_.first_held(), patch_.uvs());
-  } else {
-    solver_.factorize(joined_.fans(), uvs_.size());
-  }
-  const std::span<Vec2d> moving = little ? patch_.uvs() : uvs_;
+  solver_.factorize(joined_.fans(), uvs_.size());
   for (std::size_t i = 0; i < kRelaxation.size(); ++i) {
-    if (i == kLookAfter) {
-      if (little) patch_.give_back(uvs_);
-      if (!promising(limits, outcome)) return false;
-    }
-    solver_.step(kRelaxation[i], moving);
+    if (i == kLookAfter && !promising(limits, outcome)) return false;
+    solver_.step(kRelaxation[i], uvs_);
   }
-  if (little) patch_.give_back(uvs_);
   return true;
 }
 

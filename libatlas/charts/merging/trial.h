@@ -12,7 +12,6 @@
 #include "libatlas/charts/merging/fan_measure.h"
 #include "libatlas/charts/merging/fan_solver.h"
 #include "libatlas/charts/merging/trial_mesh.h"
-#include "libatlas/charts/merging/trial_patch.h"
 
 namespace atlas {
 
@@ -85,7 +84,6 @@ class Trial {
   const Fans& fans_;
   CoarseUv& uv_;
   TrialMesh joined_;
-  TrialPatch patch_;
   FanSolver solver_;
   FanMeasure measure_;
   CrossingFinder crossings_;

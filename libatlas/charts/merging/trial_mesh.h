@@ -49,11 +49,6 @@ class TrialMesh {
   int euler() const { return euler_; }
   // The vertices of each arc that is not joined.
   std::span<const std::array<std::uint32_t, 2>> border() const { return border_; }
-  // Returns the indices of the cells that a cell is joined to.
-  std::span<const std::uint32_t> neighbours(std::uint32_t place) const {
-    return {neighbour_.data() + first_neighbour_[place],
-            neighbour_.data() + first_neighbour_[place + 1]};
-  }
   bool in_first(std::uint32_t cell) const { return scratch_.place[cell] < first_count_; }
 
  private:
@@ -76,7 +71,7 @@ class TrialMesh {
   std::vector<std::uint32_t> class_;             // of each vertex that is not a centre
   std::vector<std::array<std::uint32_t, 2>> border_;
   std::vector<std::uint32_t> united_;  // classes with an alias
-  // neighbours() of all cells; where those of each cell begin, and the end.
+  // The indices of the cells that each cell is joined to; where those of each begin, and the end.
   std::vector<std::uint32_t> neighbour_, first_neighbour_;
   // Scratch of sweeps; met_, one per cell, is the last sweep that met it.
   std::vector<std::uint32_t> queue_, met_;
