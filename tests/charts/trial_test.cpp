@@ -95,7 +95,7 @@ TEST(TrialMesh, ChartsKeepWhatIsJoinedInThem) {
 
 // The cells of a spherical cap as one mesh, with a solver for them and their initial uvs.
 struct CapFans {
-  CoarseMesh mesh = coarse_of(cap(60, 20, 1.2));
+  CoarseMesh mesh;
   Halves halves{mesh, kEast};
   TrialScratch scratch{mesh};
   TrialMesh trial{mesh, scratch};
@@ -105,7 +105,7 @@ struct CapFans {
   std::vector<Vec3d> places;
   std::vector<std::array<std::uint32_t, 3>> triangles;
 
-  CapFans() {
+  explicit CapFans(CoarseMesh coarse = coarse_of(cap(60, 20, 1.2))) : mesh(std::move(coarse)) {
     trial.assemble({all_cells(mesh), {}, all_arcs(halves)}, halves.joined(mesh, true));
     uvs.resize(trial.vertex_count());
     place();
@@ -138,8 +138,20 @@ struct CapFans {
   }
 };
 
-TEST(FanSolver, AgreesWithTheGeneralSolver) {
-  CapFans cap;
+// Two half discs, each with hundreds of small cells along its rim.
+CoarseMesh wide_fans() {
+  constexpr int kAround = 1400, kRings = 4, kTrianglesAStep = 2 * kRings - 1, kInner = 3;
+  const Topology topology = topology_of(cap(kAround, kRings, 1.2));
+  Cells cells;
+  cells.count = 2 + kAround / 2;
+  for (std::uint32_t t = 0; t < topology.triangle_count(); ++t) {
+    const std::uint32_t step = t / kTrianglesAStep;
+    cells.of_triangle.push_back(t % kTrianglesAStep < kInner ? step / (kAround / 2) : 2 + step / 2);
+  }
+  return build_coarse(topology, 40, cells);
+}
+
+void expect_general_solution(CapFans& cap) {
   std::vector<Vec2d> expected = cap.uvs;
   ParamWorkspace workspace;
   for (int i = 0; i < 4; ++i) {  // without over-relaxation
@@ -152,6 +164,21 @@ TEST(FanSolver, AgreesWithTheGeneralSolver) {
     const double length = distance(expected[v], expected[0]);
     EXPECT_NEAR(distance(cap.uvs[v], cap.uvs[0]), length, 1e-5 * length) << v;
   }
+}
+
+TEST(FanSolver, AgreesWithTheGeneralSolver) {
+  CapFans cap;
+  expect_general_solution(cap);
+}
+
+// The centres of such fans are not eliminated, and the factor grows with their slots, not with the
+// square of their number.
+TEST(FanSolver, SolvesForTheCentresOfWideFans) {
+  CapFans cap(wide_fans());
+  ASSERT_GT(cap.mesh.cells[0].slot_count, 300u);
+  ASSERT_GT(cap.mesh.cells[1].slot_count, 300u);
+  EXPECT_LT(cap.solver.entries(), 30 * cap.uvs.size());
+  expect_general_solution(cap);
 }
 
 // Steps up to twice as long as plain ones lower the energy, too.

@@ -13,6 +13,9 @@ constexpr double kNoPivot = 1e-15;
 // If the part of a triangle's map that turns and scales is smaller than this share of its area, the
 // map is a mirror image, and mere rounding would choose its rotation.
 constexpr double kNoTurn = 1e-3;
+// The centres of fans with more slots stay in the factor. Without its centre, every slot of a fan
+// is joined to every other one: trials of discs with 8000 teeth took up to ten seconds each.
+constexpr std::uint32_t kWideFan = 64;
 
 ATLAS_INLINE Pair lower_half(const Quad& q) {
   return __builtin_shufflevector(q, q, 0, 1);
@@ -221,12 +224,15 @@ struct FanSolver::Kernels {
         before = b;
       }
       pair_at(load[fan.triangles->a]) += before;
+      const std::uint32_t row = solver.centre_row_[c];
+      if (row != kNoIndex) pair_at(load[joined.cells.size() + row]) = centre;
       centre *= fans.inverse_pivot[joined.cells[c]];
+      pair_at(load[c]) = centre;
+      if (row != kNoIndex) continue;
       const FanCoupling* const coupling = fans.coupling.data() + slot;
       for (std::uint32_t i = 0; i < fan.count; ++i) {
         pair_at(load[fan.triangles[i].a]) -= coupling[i].centre * centre;
       }
-      pair_at(load[c]) = centre;
     }
   }
 
@@ -248,7 +254,7 @@ struct FanSolver::Kernels {
     Vec2d* const load = solver.load_.data() + solver.joined_.cells.size();
     solve(solver.factor(), load);
     Vec2d* const rows = uvs + solver.joined_.cells.size();
-    for (std::uint32_t i = 0; i < solver.count_; ++i) {
+    for (std::uint32_t i = 0; i < solver.vertex_rows_; ++i) {
       Pair& uv = pair_at(rows[i]);
       uv += relaxation * (pair_at(load[i]) - uv);
     }
@@ -284,7 +290,12 @@ FanSolver::Fan FanSolver::scratch_fan() {
 
 void FanSolver::factorize(const JoinedFans& joined, std::size_t vertex_count) {
   joined_ = joined;
-  count_ = row_of(static_cast<std::uint32_t>(vertex_count));
+  vertex_rows_ = count_ = row_of(static_cast<std::uint32_t>(vertex_count));
+  centre_row_.clear();
+  for (std::size_t c = 0; c < joined.cells.size(); ++c) {
+    const bool wide = joined.first[c + 1] - joined.first[c] > kWideFan;
+    centre_row_.push_back(wide ? count_++ : kNoIndex);
+  }
   find_envelope();
   factor_.assign(row_.back(), 0);
   rows_.resize(longest_);
@@ -299,17 +310,22 @@ void FanSolver::find_envelope() {
   const std::uint32_t pairs = (count_ + 1) / 2;
   first_.resize(pairs);
   for (std::uint32_t p = 0; p < pairs; ++p) first_[p] = 2 * p;
+  const auto reach = [&](std::uint32_t row, std::uint32_t low) {
+    first_[row / 2] = std::min(first_[row / 2], low / 2 * 2);
+  };
   std::uint32_t longest = 0;
   for (std::size_t c = 0; c < joined_.cells.size(); ++c) {
+    const std::uint32_t begin = joined_.first[c], end = joined_.first[c + 1];
     std::uint32_t low = kNoIndex;
-    for (std::uint32_t i = joined_.first[c]; i < joined_.first[c + 1]; ++i) {
-      low = std::min(low, row_of(joined_.triangles[i].a));
+    for (std::uint32_t i = begin; i < end; ++i) low = std::min(low, row_of(joined_.triangles[i].a));
+    const std::uint32_t centre = centre_row_[c];
+    if (centre != kNoIndex) reach(centre, low);
+    for (std::uint32_t i = begin; i < end; ++i) {
+      const std::uint32_t a = row_of(joined_.triangles[i].a), b = row_of(joined_.triangles[i].b);
+      reach(std::max(a, b), centre != kNoIndex ? std::min(a, b) : low);
+      if (centre == kNoIndex) reach(a, low);
     }
-    for (std::uint32_t i = joined_.first[c]; i < joined_.first[c + 1]; ++i) {
-      std::uint32_t& first = first_[row_of(joined_.triangles[i].a) / 2];
-      first = std::min(first, low / 2 * 2);
-    }
-    longest = std::max(longest, joined_.first[c + 1] - joined_.first[c]);
+    longest = std::max(longest, end - begin);
   }
   longest_ = (longest + 3) / 4 * 4;
   row_.resize(pairs + 1);
@@ -317,7 +333,7 @@ void FanSolver::find_envelope() {
   for (std::uint32_t p = 0; p < pairs; ++p) row_[p + 1] = row_[p] + 2 * (2 * p + 2 - first_[p]);
 }
 
-// Adds the stiffness of one fan, with its centre eliminated.
+// Adds the stiffness of one fan, with its centre eliminated unless that has a row.
 void FanSolver::fill(std::size_t place) {
   const auto* const fan = &joined_.triangles[joined_.first[place]];
   const auto n = joined_.first[place + 1] - joined_.first[place];
@@ -325,9 +341,9 @@ void FanSolver::fill(std::size_t place) {
   const double inverse = fans_.inverse_pivot[joined_.cells[place]];
   const FanCoupling* const coupling = &fans_.coupling[fan->slot];
   for (std::uint32_t i = 0; i < n; ++i) {
-    const std::uint32_t row = row_of(fan[i].a), pair = row / 2;
-    columns_[i] = row / 2 * 4 + row % 2;
-    rows_[i] = factor_.data() + row_[pair] - 2 * std::size_t{first_[pair]} + row % 2 * 2;
+    const std::uint32_t row = row_of(fan[i].a);
+    columns_[i] = column_of(row);
+    rows_[i] = row_values(row);
   }
   const auto add = [&](std::uint32_t i, std::uint32_t j, double value) {
     const std::uint32_t p = columns_[i], q = columns_[j];
@@ -337,6 +353,17 @@ void FanSolver::fill(std::size_t place) {
       (p > q ? rows_[i] : rows_[j])[std::min(p, q)] += value;
     }
   };
+  const std::uint32_t centre = centre_row_[place];
+  if (centre != kNoIndex) {
+    double* const row = row_values(centre);
+    for (std::uint32_t i = 0; i < n; ++i) {
+      rows_[i][columns_[i]] += coupling[i].own;
+      add(i, i + 1 == n ? 0 : i + 1, coupling[i].next);
+      row[columns_[i]] += coupling[i].centre;
+    }
+    row[column_of(centre)] = inverse > 0 ? 1 / inverse : 0;
+    return;
+  }
   for (std::uint32_t i = 0; i < n; ++i) {
     const double scaled = coupling[i].centre * inverse;
     rows_[i][columns_[i]] += coupling[i].own - coupling[i].centre * scaled;
