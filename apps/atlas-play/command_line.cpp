@@ -293,9 +293,12 @@ bool two_points(const std::string& text, Vec3d& a, Vec3d& b) {
 
 }  // namespace
 
-Result<Camera> camera_of(const CommandLine& line, const ViewScene& scene) {
-  Camera camera = start_camera(scene, line.render.up, line.fov);
-  if (line.camera.empty()) return camera;
+Result<Camera> camera_of(const CommandLine& line, const ViewScene& scene, const Context& context) {
+  if (line.camera.empty()) {
+    const Camera camera = start_camera(scene, line.render.up, line.fov, context);
+    return context.cancelled() ? Result<Camera>(Status::cancelled()) : camera;
+  }
+  Camera camera = camera_for(scene.bounds, line.render.up, line.fov);
   Vec3d a, b;
   if (!two_points(line.camera, a, b) || a == b || !std::isfinite(a.x + a.y + a.z + b.x + b.y + b.z))
     return Status{ErrorCode::bad_option,

@@ -151,7 +151,7 @@ Status play(CommandLine& line, Terminal& terminal, const Context& context) {
   // A world is already lit, and its reflectance is not known, so a sun would paint it white.
   const bool without_sun = scene->unlit == Unlit::all && !line.sun_asked;
   if (without_sun) line.render.shading = Shading::unlit;
-  Result<Camera> camera = camera_of(line, *scene);
+  Result<Camera> camera = camera_of(line, *scene, context);
   if (!camera.ok()) return camera.status();
   line.play.camera = *camera;
 
