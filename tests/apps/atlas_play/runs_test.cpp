@@ -127,7 +127,11 @@ TEST_F(AtlasPlay, OptionsThatWouldChangeNothingAreRefused) {
         {"--plan --record film", "--plan draws nothing, so --record"},
         {"--plan --bench b", "--plan draws nothing, so --bench"},
         {"--bench b --frames 3", "--frames is not for --bench (give --bench-frames)"},
-        {"--bench b --close-after 3", "--close-after is not for --bench"}}) {
+        {"--bench b --close-after 3", "--close-after is not for --bench"},
+        {"--bench b --shading ward", "--shading is not for --bench (give --bench-shadings)"},
+        {"--bench b --shadows hold", "--shadows is not for --bench (give --bench-methods)"},
+        {"--bench b --visibility", "--visibility is not for --bench"},
+        {"", "--software is for --headless"}}) {
     const RunResult r = run(std::string("roof.obj --software ") + options);
     EXPECT_EQ(r.exit_code, 2) << options;
     EXPECT_TRUE(holds(r.errors, words)) << r.errors;
