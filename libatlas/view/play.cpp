@@ -87,6 +87,10 @@ fs::path recorded_frame(const PlayOptions& options, int frame) {
   return folder / fmt::format("frame{:05}.png", frame);
 }
 
+fs::path screenshot_file(const PlayOptions& options) {
+  return options.screenshot.empty() ? "screenshot.png" : options.screenshot;
+}
+
 Result<PlaySummary> play_headless(GlContext& gl, Renderer& renderer, const PlayOptions& options,
                                   const Context& context) {
   if (!options.record.empty()) {
