@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <iterator>
 #include <vector>
 
 #include "apps/atlas-export/command_line.h"
@@ -175,12 +176,25 @@ Status check_files_stay(const LoadedScene& loaded, const app::ExportCommand& com
   return {};
 }
 
+// Light that includes the reflectance needs no texel.
+bool uses_textures(const app::ExportCommand& command) {
+  return command.options.keep_scene || command.options.quantity == Quantity::illuminance;
+}
+
+bool is_texture(const std::filesystem::path& file, const Scene& scene) {
+  return std::any_of(scene.textures.begin(), scene.textures.end(),
+                     [&](const Texture& texture) { return texture.path == file; });
+}
+
 // Adds the dependency file, if asked for, to what is written with the world.
 Status add_depfile(const app::ExportCommand& command, const LoadedScene& loaded,
                    ExportOptions& options) {
   if (command.depfile.empty()) return {};
   std::vector<std::filesystem::path> inputs{command.scene, command.read.illumination_file};
-  inputs.insert(inputs.end(), loaded.files.begin(), loaded.files.end());
+  std::copy_if(loaded.files.begin(), loaded.files.end(), std::back_inserter(inputs),
+               [&](const std::filesystem::path& file) {
+                 return uses_textures(command) || !is_texture(file, loaded.scene);
+               });
   Result<std::string> rule = app::dependency_rule(options.target, inputs);
   if (!rule.ok()) return rule.status();
   options.extra_files.push_back({command.depfile, std::move(*rule)});
@@ -222,9 +236,8 @@ bool is_gltf(const std::filesystem::path& path) {
 ReadOptions read_options(const app::ExportCommand& command) {
   ReadOptions read = command.read;
   read.load_textures = !command.options.charts_only;
-  // Light that includes the reflectance needs no texel. But what texture files there are must be
-  // known, since pages must not replace them.
-  read.encoded_textures = command.options.quantity != Quantity::illuminance;
+  // What texture files there are must be known in any case, since pages must not replace them.
+  read.encoded_textures = !uses_textures(command);
   read.unlit_textures = false;  // without light no page has an image
   if (!command.options.keep_scene) return read;
   // A glTF file that is written again keeps its normals by itself.

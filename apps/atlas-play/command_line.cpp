@@ -250,6 +250,14 @@ std::string about_running(const CLI::App& app, const CommandLine& l) {
   for (const char* count : {"--frames", "--close-after"})
     if (!l.bench.empty() && app.count(count) > 0)
       return fmt::format("{} is not for --bench (give --bench-frames)", count);
+  if (!l.bench.empty() && app.count("--shading") > 0)
+    return "--shading is not for --bench (give --bench-shadings)";
+  if (!l.bench.empty() && app.count("--shadows") > 0)
+    return "--shadows is not for --bench (give --bench-methods)";
+  if (!l.bench.empty() && app.count("--visibility") > 0)
+    return "--visibility is not for --bench, which measures it and colours (leave one out)";
+  if (l.in_window() && l.software)
+    return "--software is for --headless (give that too; a window uses the display's driver)";
   if (l.in_window() && app.count("--frames") > 0)
     return "--frames is for --headless (give that too, or --close-after for a window)";
   if (l.headless && app.count("--close-after") > 0)
@@ -293,9 +301,12 @@ bool two_points(const std::string& text, Vec3d& a, Vec3d& b) {
 
 }  // namespace
 
-Result<Camera> camera_of(const CommandLine& line, const ViewScene& scene) {
-  Camera camera = start_camera(scene, line.render.up, line.fov);
-  if (line.camera.empty()) return camera;
+Result<Camera> camera_of(const CommandLine& line, const ViewScene& scene, const Context& context) {
+  if (line.camera.empty()) {
+    const Camera camera = start_camera(scene, line.render.up, line.fov, context);
+    return context.cancelled() ? Result<Camera>(Status::cancelled()) : camera;
+  }
+  Camera camera = camera_for(scene.bounds, line.render.up, line.fov);
   Vec3d a, b;
   if (!two_points(line.camera, a, b) || a == b || !std::isfinite(a.x + a.y + a.z + b.x + b.y + b.z))
     return Status{ErrorCode::bad_option,

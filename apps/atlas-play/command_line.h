@@ -40,7 +40,8 @@ struct Parsed {
 Parsed parse_command_line(int argc, char** argv);
 
 // Returns the camera of "eye;target", or, if that is empty, the one where a visitor would enter the
-// scene (start_camera()). Errors: bad_option if the text is something else.
-Result<Camera> camera_of(const CommandLine& line, const ViewScene& scene);
+// scene (start_camera()). Errors: bad_option if the text is something else; cancelled.
+Result<Camera> camera_of(const CommandLine& line, const ViewScene& scene,
+                         const Context& context = {});
 
 }  // namespace atlas::app

@@ -73,12 +73,14 @@ Status check_outputs(const CommandLine& line) {
 // Refuses pictures that would replace a file of the scene. Its textures, such as the pages of a
 // world, are known only when it has been read.
 Status check_files_stay(const CommandLine& line, const ViewScene& scene) {
-  const std::filesystem::path film = recorded_frame(line.play, 0).parent_path();
+  const bool may_record = line.in_window() || !line.play.record.empty();
+  const auto film = may_record ? recorded_frame(line.play, 0).parent_path() : "";
+  const auto picture = line.in_window() ? screenshot_file(line.play) : line.play.screenshot;
   for (const std::filesystem::path& file : scene.files) {
-    if (Status s = check_output(line.play.screenshot, {file}); !s.ok()) return s;
+    if (Status s = check_output(picture, {file}); !s.ok()) return s;
     const std::filesystem::path name = file.filename();
     std::error_code error;  // a folder that is not there holds nothing
-    if (lower_extension(name) == ".png" && name.string().starts_with("frame") &&
+    if (may_record && lower_extension(name) == ".png" && name.string().starts_with("frame") &&
         std::filesystem::equivalent(film / name, file, error))
       return {ErrorCode::bad_option,
               fmt::format("{}: holds {}, which is read and a recording may replace (give the "
@@ -151,7 +153,7 @@ Status play(CommandLine& line, Terminal& terminal, const Context& context) {
   // A world is already lit, and its reflectance is not known, so a sun would paint it white.
   const bool without_sun = scene->unlit == Unlit::all && !line.sun_asked;
   if (without_sun) line.render.shading = Shading::unlit;
-  Result<Camera> camera = camera_of(line, *scene);
+  Result<Camera> camera = camera_of(line, *scene, context);
   if (!camera.ok()) return camera.status();
   line.play.camera = *camera;
 

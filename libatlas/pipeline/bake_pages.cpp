@@ -40,13 +40,15 @@ constexpr std::size_t kBytesAtOnce = std::size_t{256} << 20;
 
 class PageBaker {
  public:
-  PageBaker(const PagesToBake& pages, AtomicFiles& files, const Context& context)
+  PageBaker(const PagesToBake& pages, AtomicFiles& files, const Context& context,
+            const Context& images)
       : light_(pages.light),
         layout_(pages.layout),
         options_(pages.options),
         mip_levels_(pages.mip_levels),
         files_(files),
         context_(context),
+        images_(images),
         pages_(placements_by_page(layout_)),
         write_cpu_(layout_.pages.size(), 0),
         fraction_(layout_.pages.size(), 0) {}
@@ -63,6 +65,7 @@ class PageBaker {
       const BookedTime watch(wall_seconds, result_.write_wall);
       if (Status s = writing.finish(); !s.ok()) return s;
     }
+    images_.report("images", 1);
     for (std::size_t p = 0; p < pages_.size(); ++p) {
       std::error_code error;
       const auto bytes = std::filesystem::file_size(result_.image_sources[p], error);
@@ -130,13 +133,28 @@ class PageBaker {
     result_.pages.push_back({name, layout_.pages[p].width, layout_.pages[p].height,
                              std::uint32_t(pages_[p].size()), 0});
     const BookedTime watch(wall_seconds, result_.write_wall);
+    if (p + 1 == pages_.size()) only_images_are_left();
     return writing.add([this, p, png, exr, page = std::move(baked)]() -> Status {
       const BookedTime own_watch(own_cpu_seconds, write_cpu_[p]);
       if (Status s = write_png(png, page.display, {options_.png_compression, true}); !s.ok())
         return s;
-      return exr.empty() ? Status() : write_exr(exr, page.linear);
+      if (Status s = exr.empty() ? Status() : write_exr(exr, page.linear); !s.ok()) return s;
+      const std::lock_guard lock(reporting_);
+      ++written_;
+      if (baked_) report_images();
+      return {};
     });
   }
+
+  // Ends the progress of baking and begins that of images, which were written beside it.
+  void only_images_are_left() {
+    const std::lock_guard lock(reporting_);
+    baked_ = true;
+    context_.report("baking", 1);
+    report_images();
+  }
+
+  void report_images() const { images_.report("images", double(written_) / double(pages_.size())); }
 
   Result<BakedPage> bake(std::size_t p) {
     Context context = context_;
@@ -167,20 +185,23 @@ class PageBaker {
   const int mip_levels_;
   AtomicFiles& files_;
   const Context& context_;
+  const Context& images_;
   std::vector<std::vector<ChartPlacement>> pages_;
   std::optional<FidelityMeter> meter_;
   std::vector<double> write_cpu_;  // one per page; each writer adds to its own
   std::mutex reporting_;
   std::vector<double> fraction_;  // one per page: how much is done
   double fractions_ = 0;          // their sum
+  std::size_t written_ = 0;       // pages
+  bool baked_ = false;            // all pages are
   BakedPages result_;
 };
 
 }  // namespace
 
-Result<BakedPages> bake_pages(const PagesToBake& pages, AtomicFiles& files,
-                              const Context& context) {
-  return PageBaker(pages, files, context).run();
+Result<BakedPages> bake_pages(const PagesToBake& pages, AtomicFiles& files, const Context& context,
+                              const Context& images) {
+  return PageBaker(pages, files, context, images).run();
 }
 
 }  // namespace atlas

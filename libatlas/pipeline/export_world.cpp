@@ -182,7 +182,9 @@ class Export {
   }
 
   Status size_all_textures() {
-    const Context& context = record_.begin("downsizing");
+    // Without a threshold, textures get their sizes all the same, but none is halved.
+    const bool downsizing = options_.threshold > 0;
+    const Context& context = record_.begin(downsizing ? "downsizing" : "sizing");
     const TextureOptions texture = texture_options(plan_, report_, options_);
     Result<SizedTextures> sized = size_textures(*light_, {texture, options_}, context);
     if (!sized.ok()) return sized.status();
@@ -289,7 +291,7 @@ class Export {
   Status bake() {
     const Context& context = record_.begin("baking");
     Result<BakedPages> baked =
-        bake_pages({*light_, layout_, options_, report_.mip_levels}, files_, context);
+        bake_pages({*light_, layout_, options_, report_.mip_levels}, files_, context, context_);
     if (!baked.ok()) return files_.told_by_target(baked.status());
     report_.pages = baked->pages;
     image_sources_ = std::move(baked->image_sources);
@@ -304,6 +306,7 @@ class Export {
                  fmt::format("{} charts, {} shifts", charts, options_.shifts)});
     record_.add("images", baked->write_cpu, baked->write_wall, {pages, bytes, "bytes", ""});
     if (options_.measure_error) {
+      context_.report("error", 1);
       report_.error_measured = true;
       const Fidelity& fidelity = report_.fidelity = baked->fidelity;
       record_.add("error", baked->measure_cpu, baked->measure_wall,

@@ -23,6 +23,7 @@ const Context& StageRecorder::begin(std::string name) {
 }
 
 void StageRecorder::finish(StageOutcome outcome) {
+  context_.report(name_, 1);
   add(name_, own_cpu_seconds() - cpu_, wall_seconds() - wall_, std::move(outcome));
 }
 
@@ -37,7 +38,6 @@ void StageRecorder::add(std::string name, double cpu_seconds, double wall_second
   stage.size_out = outcome.out;
   stage.unit = std::move(outcome.unit);
   stage.quality = std::move(outcome.quality);
-  context_.report(stage.stage, 1);
   report_.stages.push_back(stage);
   if (stage_done_) stage_done_(stage);
 }

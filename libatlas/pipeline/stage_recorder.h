@@ -29,7 +29,7 @@ class StageRecorder {
   const Context& begin(std::string name);
   void finish(StageOutcome outcome);
 
-  // Appends a stage that was measured elsewhere.
+  // Appends a stage that was measured, and has reported its progress, elsewhere.
   void add(std::string name, double cpu_seconds, double wall_seconds, StageOutcome outcome);
 
  private:

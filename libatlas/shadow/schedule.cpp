@@ -1,8 +1,11 @@
 #include "libatlas/shadow/schedule.h"
 
 #include <algorithm>
+#include <cmath>
+#include <glm/geometric.hpp>
 
 #include "libatlas/core/degrees.h"
+#include "libatlas/core/glm_bridge.h"
 #include "libatlas/shadow/blend.h"
 
 namespace atlas {
@@ -20,6 +23,34 @@ double degrees_between(const Vec3d& a, const Vec3d& b) {
   return degrees(angle_between(a, b));
 }
 
+// A light bends its way by at least so much where a key is put. Smaller bends, such as those of a
+// curve that is given by many directions, leave the light close to the arc between its keys.
+constexpr double kTurnDegrees = 30;
+
+// Bends that differ by less than this are equal: those of a steady curve differ by rounding.
+constexpr double kBendRounding = 1e-3;
+
+// Returns the way from `here` to `there` on the sphere, as it begins: a tangent at `here`, about as
+// long as the way.
+glm::dvec3 tangent(const Vec3d& here, const Vec3d& there) {
+  const glm::dvec3 a = to_glm(here) / std::hypot(here.x, here.y, here.z);
+  const glm::dvec3 b = to_glm(there) / std::hypot(there.x, there.y, there.z);
+  return (b - a) - a * glm::dot(a, b - a);
+}
+
+bool at_rest(const Vec3d& here, const Vec3d& there) {
+  constexpr double kRest = 1e-9;  // shorter ways (radians) are mostly rounding
+  return angle_between(here, there) < kRest;
+}
+
+// Returns by how many degrees the way of a light bends at `here`: none on a great circle, 180 where
+// it turns back, stops or starts.
+double bend(const Vec3d& before, const Vec3d& here, const Vec3d& after) {
+  const bool rested = at_rest(before, here), rests = at_rest(here, after);
+  if (rested || rests) return rested && rests ? 0 : 180;
+  return degrees_between(from_glm(-tangent(here, before)), from_glm(tangent(here, after)));
+}
+
 }  // namespace
 
 KeySchedule::KeySchedule(const ScheduleOptions& options) : options_(options) {
@@ -29,8 +60,47 @@ KeySchedule::KeySchedule(const ScheduleOptions& options) : options_(options) {
     options_.max_key_degrees = kMaxKeyDegrees;
 }
 
-// Returns the number of frames from the key that is `start` frames ahead to the one after it.
+// Returns the number of frames from the key that is `start` frames ahead to the first place where
+// the light turns, or most + 1 if it does not within `most` frames or jumps before.
+int KeySchedule::frames_to_turn(int start, int most, const Ahead& ahead) const {
+  Vec3d at = ahead(start), next = ahead(start + 1);
+  double before = 0, here = start > 0 ? bend(ahead(start - 1), at, next) : 0;
+  bool rested = false;
+  for (int n = 0; n <= most; ++n) {
+    if (degrees_between(at, next) > options_.jump_degrees) break;
+    const Vec3d last = ahead(start + n + 2);
+    const bool jumps = degrees_between(next, last) > options_.jump_degrees;
+    const double after = jumps ? 0 : bend(at, next, last);
+    // A turn between two frames bends the way in both of them; the sharper bend is nearer to it.
+    const bool sharpest = here > before + kBendRounding && here >= after - kBendRounding;
+    const bool turns = here > 90 || (sharpest && here + std::max(before, after) > kTurnDegrees);
+    if (n > 1 && turns) return n;
+    // A turn in the frame after a key is the one that this key is for, if frames have become
+    // shorter since. But the light turns in both if it goes back to the start of a short path.
+    if (n == 1 && here > 90 && before > 90 && !rested) return n;
+    before = here;
+    here = after;
+    rested = at_rest(at, next);
+    at = next;
+    next = last;
+  }
+  return most + 1;
+}
+
+// Returns the number of frames from the key that is `start` frames ahead to the one after it. Where
+// the light turns, keys on both sides would be nearer to each other than to the light, and blends
+// would never show the turn. It therefore has a key of its own. If the turn is in the interval
+// after this one, both are made equally long, so that no frame draws much more than others.
 int KeySchedule::interval_from(int start, const Ahead& ahead) const {
+  const int straight = straight_interval_from(start, ahead);
+  if (!ahead) return straight;
+  const int turn = frames_to_turn(start, 2 * straight - 1, ahead);
+  if (turn <= straight) return turn;
+  return turn < 2 * straight ? turn / 2 : straight;
+}
+
+// Returns the same for a light that does not turn.
+int KeySchedule::straight_interval_from(int start, const Ahead& ahead) const {
   const bool by_degrees = options_.interval_degrees > 0;
   const int longest = by_degrees ? options_.max_frames : options_.interval_frames;
   if (!ahead) return options_.interval_frames;
@@ -130,13 +200,16 @@ FramePlan KeySchedule::next_unblended(const Vec3d& now) {
 FramePlan KeySchedule::next(const Vec3d& now, const Ahead& ahead) {
   if (!options_.blend) return next_unblended(now);
   FramePlan plan;
-  const bool jumped =
-      valid_ && (degrees_between(last_, now) > options_.jump_degrees || left_keys(now, ahead));
+  const bool ends = frame_ + 1 >= length_;
+  // A light that stops at a key needs no other, though it is not at the interval's first one.
+  const bool arrives = ends && ahead && same(to_.direction, now);
+  const bool jumped = valid_ && (degrees_between(last_, now) > options_.jump_degrees ||
+                                 (!arrives && left_keys(now, ahead)));
   if (!valid_ || jumped) {
     refresh(now, ahead, plan);
     begin_interval(now, ahead);
     valid_ = true;
-  } else if (++frame_ >= length_) {
+  } else if (++frame_; ends) {
     from_ = to_;
     to_ = coming_;
     length_ = next_length_;

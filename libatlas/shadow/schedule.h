@@ -3,10 +3,11 @@
 // fraction of a map's triangles.
 //
 // With a scripted light the key after the next is drawn ahead, a slice in each frame of the current
-// interval. No frame therefore draws a whole map, and the keys are exact. The directions of a light
-// moved by hand are not known ahead. Its keys are the directions that it had when they were begun,
-// so blended shadows follow it with a delay of one to two intervals. Nothing is predicted, so
-// nothing overshoots.
+// interval. No frame therefore draws a whole map, and the keys are exact. Where the light turns
+// back or round a corner of 30 degrees or more, a key is put in the nearest frame, and the
+// intervals there are shorter. The directions of a light moved by hand are not known ahead. Its
+// keys are the directions that it had when they were begun, so blended shadows follow it with a
+// delay of one to two intervals. Nothing is predicted, so nothing overshoots.
 #pragma once
 
 #include <cstdint>
@@ -53,7 +54,7 @@ class KeySchedule {
  public:
   static constexpr int kSlots = 3;
   // Gives the light's direction so many frames after the current one. It is called with 0 up to
-  // 2 * max(interval_frames, max_frames). It is null for a light moved by hand.
+  // 3 * max(interval_frames, max_frames) + 1. It is null for a light moved by hand.
   using Ahead = std::function<Vec3d(int frames)>;
 
   // Numbers of frames below 1 count as 1, and a max_key_degrees out of range as the largest.
@@ -81,7 +82,9 @@ class KeySchedule {
   };
   void refresh(const Vec3d& now, const Ahead& ahead, FramePlan& plan);
   void begin_interval(const Vec3d& now, const Ahead& ahead);
+  int frames_to_turn(int start, int most, const Ahead& ahead) const;
   int interval_from(int start, const Ahead& ahead) const;
+  int straight_interval_from(int start, const Ahead& ahead) const;
   bool left_keys(const Vec3d& now, const Ahead& ahead) const;
   int free_slot() const;
   void draw_whole(int slot, const Vec3d& direction, FramePlan& plan);

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "libatlas/core/clock.h"
+#include "libatlas/core/progress.h"
 
 namespace atlas {
 namespace {
@@ -185,10 +186,21 @@ Result<std::vector<BenchError>> errors_of_interval(const Renderer& first, const 
       probe.sums.squares += std::pow(10, -psnr(shown, c) / 10);
       probe.sums.ssim += ssim(shown, c);
     }
+    context.report("errors", double(f + 1) / count);
   }
   std::vector<BenchError> errors;
   for (const auto& [method, probe] : probes) errors.push_back(finish(probe.sums, method, k));
   return errors;
+}
+
+// Returns which part of its frames and of its time the combination that is least far has had.
+double done_of(const std::vector<Contender>& contenders, const BenchOptions& options) {
+  double done = 1;
+  for (const Contender& c : contenders) {
+    done = std::min(done, double(c.run.frames.size()) / std::max(options.frames, 1));
+    if (options.seconds > 0) done = std::min(done, c.total / options.seconds);
+  }
+  return done;
 }
 
 // Makes a renderer for every shading with every method.
@@ -255,6 +267,7 @@ Result<BenchTimes> bench_times(const Renderer& first, const LightPath& path,
     }
     if (f + 1 == warm_up) control.fit(spread_of(warm).p50);
     if (f >= warm_up) control.run();
+    context.report("times", done_of(contenders, options));
   }
   BenchTimes times;
   for (Contender& c : contenders) {
@@ -268,11 +281,14 @@ Result<BenchTimes> bench_times(const Renderer& first, const LightPath& path,
 Result<std::vector<BenchError>> bench_errors(const Renderer& first, const LightPath& path,
                                              const BenchOptions& options, const Context& context) {
   std::vector<BenchError> errors;
-  for (int k : options.error_intervals) {
+  const double share = 1.0 / double(std::max<std::size_t>(options.error_intervals.size(), 1));
+  for (std::size_t i = 0; i < options.error_intervals.size(); ++i) {
+    const int k = options.error_intervals[i];
+    const Context part = part_of_stage(context, "errors", double(i) * share, double(i + 1) * share);
     BenchOptions with_k = options;
     with_k.render.schedule.interval_frames = k;
     with_k.render.schedule.interval_degrees = 0;
-    Result<std::vector<BenchError>> of_k = errors_of_interval(first, path, with_k, context);
+    Result<std::vector<BenchError>> of_k = errors_of_interval(first, path, with_k, part);
     if (!of_k.ok()) return of_k.status();
     errors.insert(errors.end(), of_k->begin(), of_k->end());
   }

@@ -87,7 +87,7 @@ struct BenchResult {
 
 // Runs every shading with every method. The combinations take turns frame by frame, so that a busy
 // machine slows all of them alike and their ratios stay valid; the control takes its turn with
-// them.
+// them. Progress is that of the stage "times", and of "errors" below.
 Result<BenchTimes> bench_times(const Renderer& first, const LightPath& path,
                                const BenchOptions& options, const Context& context = {});
 

@@ -73,7 +73,8 @@ Result<ViewScene> load_view(const fs::path& path, const ViewSceneOptions& option
   for (const std::string& line : loaded->defects.lines()) context.say("defect: " + line);
   say_what_is_dark(loaded->scene, context);
   say_what_is_opaque(loaded->scene, context);
-  Result<ViewScene> view = make_view_scene(loaded->scene, options);
+  Result<ViewScene> view = make_view_scene(loaded->scene, options, context);
+  if (view.status().code() == ErrorCode::cancelled) return view.status();
   if (!view.ok())
     return Status{view.status().code(), path.string() + ": " + view.status().message()};
   view->start = loaded->view;
@@ -84,6 +85,10 @@ Result<ViewScene> load_view(const fs::path& path, const ViewSceneOptions& option
 fs::path recorded_frame(const PlayOptions& options, int frame) {
   const fs::path folder = options.record.empty() ? "recording" : options.record;
   return folder / fmt::format("frame{:05}.png", frame);
+}
+
+fs::path screenshot_file(const PlayOptions& options) {
+  return options.screenshot.empty() ? "screenshot.png" : options.screenshot;
 }
 
 Result<PlaySummary> play_headless(GlContext& gl, Renderer& renderer, const PlayOptions& options,

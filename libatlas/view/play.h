@@ -40,6 +40,9 @@ struct PlayOptions {
 // Returns the name of a recording's frame, counted from 0.
 std::filesystem::path recorded_frame(const PlayOptions& options, int frame);
 
+// Returns the name of the file that F12 writes in a window.
+std::filesystem::path screenshot_file(const PlayOptions& options);
+
 struct PlaySummary {
   int frames = 0;
   std::int64_t shadow_passes = 0;
@@ -54,10 +57,10 @@ Result<PlaySummary> play_headless(GlContext& gl, Renderer& renderer, const PlayO
                                   const Context& context);
 
 // Shows the scene until the window is closed, with a free camera (drag, WASD, QE), panels for every
-// setting, a graph of frame times, screenshots (F12) and recording; a panel lists the keys. Error:
-// `unsupported` if the context is lost, or if the display server goes while the window is open. In
-// the latter case, end the program without destroying what belongs to the context, since the driver
-// talks to that server.
+// setting, a graph of frame times, screenshots (F12) and recording; a panel lists the keys. Errors:
+// `cancelled`; `unsupported` if the context is lost, or if the display server goes while the window
+// is open. In the latter case, end the program without destroying what belongs to the context,
+// since the driver talks to that server.
 Result<PlaySummary> play_in_window(GlWindow& window, Renderer& renderer, const PlayOptions& options,
                                    const Context& context);
 

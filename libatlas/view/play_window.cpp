@@ -83,7 +83,8 @@ class Player {
 
   Result<PlaySummary> run(const Context& context) {
     double last = wall_seconds();
-    while (!glfwWindowShouldClose(window_.handle()) && !context.cancelled()) {
+    while (!glfwWindowShouldClose(window_.handle())) {
+      if (context.cancelled()) return Status::cancelled();
       glfwPollEvents();
       const double now = wall_seconds(), elapsed = now - last;
       last = now;
@@ -291,7 +292,7 @@ class Player {
       ++summary_.recorded;
     }
     if (!std::exchange(shoot_, false)) return {};
-    const fs::path file = options_.screenshot.empty() ? "screenshot.png" : options_.screenshot;
+    const fs::path file = screenshot_file(options_);
     message_ = "wrote " + file.string();
     return write_picture(file, renderer_.read_image());
   }

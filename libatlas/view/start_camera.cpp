@@ -46,9 +46,10 @@ std::uint8_t shown_by(const ViewScene& scene, std::size_t first, const Image8* i
 }
 
 // Returns what each triangle of a baked scene shows, as display values.
-std::vector<std::uint8_t> shown_light(const ViewScene& scene) {
+std::vector<std::uint8_t> shown_light(const ViewScene& scene, const Context& context) {
   std::vector<std::uint8_t> shown(scene.triangle_count());
   for (const ViewScene::Cluster& cluster : scene.clusters) {
+    if (context.cancelled()) break;
     const std::int32_t texture = cluster.look.texture;
     const Image8* image = texture < 0 ? nullptr : &scene.textures[std::size_t(texture)].image;
     if (image != nullptr && image->empty()) image = nullptr;
@@ -58,17 +59,18 @@ std::vector<std::uint8_t> shown_light(const ViewScene& scene) {
   return shown;
 }
 
-Viewpoint start_of(const ViewScene& scene, ViewpointOptions options) {
+Viewpoint start_of(const ViewScene& scene, ViewpointOptions options, const Context& context) {
   if (!scene.baked())
-    return choose_viewpoint(scene.caster_positions, scene.caster_indices, options, Context{});
-  const std::vector<std::uint8_t> light = shown_light(scene);
+    return choose_viewpoint(scene.caster_positions, scene.caster_indices, options, context);
+  const std::vector<std::uint8_t> light = shown_light(scene, context);
   options.light = light;
-  return choose_viewpoint(scene.positions, scene.indices, options, Context{});
+  return choose_viewpoint(scene.positions, scene.indices, options, context);
 }
 
 }  // namespace
 
-Camera start_camera(const ViewScene& scene, const Vec3d& up, double fov_degrees) {
+Camera start_camera(const ViewScene& scene, const Vec3d& up, double fov_degrees,
+                    const Context& context) {
   Camera camera = camera_for(scene.bounds, up, fov_degrees);
   if (scene.start) {
     const auto [p, d] = *scene.start;
@@ -84,7 +86,7 @@ Camera start_camera(const ViewScene& scene, const Vec3d& up, double fov_degrees)
   ViewpointOptions eye;
   eye.metres_per_unit = scene.metres_per_unit;
   eye.up = up.z != 0 ? Up::z : Up::y;
-  const Viewpoint start = start_of(scene, eye);
+  const Viewpoint start = start_of(scene, eye, context);
   if (!start.inside) return camera;
   camera.eye = start.position;
   camera.target = {start.position.x + start.direction.x, start.position.y + start.direction.y,

@@ -19,12 +19,32 @@ namespace {
 
 constexpr std::uint32_t kNone = Scene::kNoTexcoord;
 
+// Polls for cancellation and reports progress in loops.
+class Steps {
+ public:
+  explicit Steps(const Context& context) : context_(context) {}
+
+  // Returns whether the loop may go on with item i of n. The loop's share of the whole work is from
+  // `from` to `to`.
+  bool go_on(std::size_t i, std::size_t n, double from, double to) const {
+    if (i % kItems != 0) return true;
+    context_.report("preparing", from + (to - from) * double(i) / double(n));
+    return !context_.cancelled();
+  }
+  void done() const { context_.report("preparing", 1); }
+  bool cancelled() const { return context_.cancelled(); }
+
+ private:
+  static constexpr std::size_t kItems = 1 << 15;
+  const Context& context_;
+};
+
 // Welds positions that are equal (-0 and 0 are). Readers keep what files say, and many files repeat
 // every corner, which would otherwise make every edge a crease.
-std::vector<std::uint32_t> weld(const std::vector<Vec3f>& positions) {
+std::vector<std::uint32_t> weld(const std::vector<Vec3f>& positions, const Steps& steps) {
   FirstIndex first(positions.size());
   std::vector<std::uint32_t> out(positions.size());
-  for (std::uint32_t i = 0; i < out.size(); ++i) {
+  for (std::uint32_t i = 0; i < out.size() && steps.go_on(i, out.size(), 0, 0.05); ++i) {
     const Vec3f& p = positions[i];
     std::uint32_t& entry = first.find(hash_words<3>({word_of(p.x), word_of(p.y), word_of(p.z)}),
                                       [&](std::uint32_t k) { return positions[k] == p; });
@@ -43,13 +63,14 @@ Buckets corners_by_vertex(const std::vector<std::uint32_t>& welded,
 
 // Returns area-weighted normals of all triangles, relative to the square of the largest coordinate,
 // since areas leave the range of float sooner than lengths. Degenerate triangles have the normal 0.
-std::vector<glm::vec3> face_normals(const Scene& scene) {
+std::vector<glm::vec3> face_normals(const Scene& scene, const Steps& steps) {
   std::vector<glm::vec3> normals(scene.triangle_count());
   double largest = 1e-300;
   for (const Vec3f& p : scene.positions)
     largest =
         std::max({largest, double(std::abs(p.x)), double(std::abs(p.y)), double(std::abs(p.z))});
-  for (std::size_t t = 0; t < normals.size(); ++t) {
+  const std::size_t n = normals.size();
+  for (std::size_t t = 0; t < n && steps.go_on(t, n, 0.1, 0.15); ++t) {
     const glm::dvec3 a = to_dvec(scene.positions[scene.indices[3 * t]]),
                      b = to_dvec(scene.positions[scene.indices[3 * t + 1]]),
                      c = to_dvec(scene.positions[scene.indices[3 * t + 2]]);
@@ -140,12 +161,13 @@ Box3 middle_of(const std::vector<Vec3f>& positions) {
 
 class Builder {
  public:
-  Builder(const Scene& scene, const ViewSceneOptions& options)
+  Builder(const Scene& scene, const ViewSceneOptions& options, const Context& context)
       : scene_(scene),
+        steps_(context),
         hold_light_(options.textures_hold_light),
-        welded_(weld(scene.positions)),
+        welded_(weld(scene.positions, steps_)),
         corners_at_(corners_by_vertex(welded_, scene.indices)),
-        faces_(face_normals(scene)),
+        faces_(face_normals(scene, steps_)),
         cosine_(float(cosine_of(options.crease_degrees))),
         first_(scene.indices.size()) {
     coloured_ = options.vertices_hold_colours && scene.lit();
@@ -169,7 +191,7 @@ class Builder {
   }
 
   // Returns the triangles grouped by look, and within each look along a curve that keeps neighbours
-  // together.
+  // together. If cancelled, returns none.
   std::vector<std::uint32_t> order() const {
     glm::dvec3 low(1e300), high(-1e300);
     for (const Vec3f& p : scene_.positions) {
@@ -182,6 +204,7 @@ class Builder {
     for (std::uint32_t t = 0; t < codes.size(); ++t)
       if (!is_invisible(material_of(t))) triangles.push_back(t);
     for (std::size_t t = 0; t < codes.size(); ++t) {
+      if (!steps_.go_on(t, codes.size(), 0.15, 0.2)) return {};
       glm::dvec3 sum(0);
       for (int k = 0; k < 3; ++k) sum += to_dvec(scene_.positions[scene_.indices[3 * t + k]]);
       const glm::dvec3 q = (sum / 3.0 - low) * scale;
@@ -194,8 +217,12 @@ class Builder {
     return triangles;
   }
 
+  // If cancelled, returns a part.
   ViewScene build(std::uint32_t cluster_triangles) {
-    for (std::uint32_t t : order()) {
+    const std::vector<std::uint32_t> triangles = order();
+    for (std::size_t i = 0; i < triangles.size(); ++i) {
+      if (!steps_.go_on(i, triangles.size(), 0.35, 0.85)) return std::move(view_);
+      const std::uint32_t t = triangles[i];
       const ViewScene::Look look = look_of(t);
       if (view_.clusters.empty() || view_.clusters.back().look != look ||
           view_.clusters.back().count >= 3 * cluster_triangles)
@@ -205,10 +232,12 @@ class Builder {
     }
     for (ViewScene::Cluster& c : view_.clusters) enclose(c);
     add_casters();
+    if (steps_.cancelled()) return std::move(view_);
     measure();
     view_.light_scale = light_scale(view_.illumination);
     const auto full = float(1 / view_.light_scale);
     for (const std::uint32_t v : on_pages_) view_.illumination[v] = {full, full, full};
+    steps_.done();
     return std::move(view_);
   }
 
@@ -295,6 +324,7 @@ class Builder {
   void add_casters() {
     std::vector<std::uint32_t> renumbered(scene_.positions.size(), kNone);
     for (std::size_t k = 0; k < scene_.indices.size(); ++k) {
+      if (!steps_.go_on(k, scene_.indices.size(), 0.85, 0.95)) return;
       if (!casts_by_itself(material_of(std::uint32_t(k / 3)))) continue;
       const std::uint32_t w = welded_[scene_.indices[k]];
       if (renumbered[w] == kNone) {
@@ -316,6 +346,7 @@ class Builder {
   }
 
   const Scene& scene_;
+  const Steps steps_;
   std::optional<bool> hold_light_;  // ViewSceneOptions::textures_hold_light
   std::vector<std::uint32_t> welded_;
   Buckets corners_at_;  // of each welded vertex
@@ -331,11 +362,13 @@ class Builder {
 
 }  // namespace
 
-Result<ViewScene> make_view_scene(const Scene& scene, const ViewSceneOptions& options) {
+Result<ViewScene> make_view_scene(const Scene& scene, const ViewSceneOptions& options,
+                                  const Context& context) {
   if (scene.triangle_count() == 0)
     return Status{ErrorCode::bad_input, "the scene has no triangles: there is nothing to show"};
   if (Status s = check_scene(scene); !s.ok()) return s;
-  ViewScene view = Builder(scene, options).build(std::max(options.cluster_triangles, 1u));
+  ViewScene view = Builder(scene, options, context).build(std::max(options.cluster_triangles, 1u));
+  if (context.cancelled()) return Status::cancelled();
   if (view.indices.empty())
     return Status{
         ErrorCode::bad_input,

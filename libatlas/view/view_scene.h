@@ -9,6 +9,7 @@
 #include <optional>
 #include <vector>
 
+#include "libatlas/core/context.h"
 #include "libatlas/core/status.h"
 #include "libatlas/scene/reader.h"
 #include "libatlas/scene/scene.h"
@@ -92,6 +93,7 @@ struct ViewSceneOptions {
 
 // Leaves out triangles that AlphaMode::mask makes invisible. Other transparent ones are opaque.
 // Errors: bad_input if there is no triangle to draw; those of check_scene().
-Result<ViewScene> make_view_scene(const Scene& scene, const ViewSceneOptions& options);
+Result<ViewScene> make_view_scene(const Scene& scene, const ViewSceneOptions& options,
+                                  const Context& context = {});
 
 }  // namespace atlas

@@ -48,7 +48,7 @@ TEST(BakePages, WarningsNameTheirPage) {
   Context context;
   context.warn = [&](std::string_view line) { said.emplace_back(line); };
   AtomicFiles files;
-  const auto baked = bake_pages({light, layout, options}, files, context);
+  const auto baked = bake_pages({light, layout, options}, files, context, context);
   ASSERT_TRUE(baked.ok()) << baked.status().message();
   ASSERT_EQ(said.size(), 1u);
   EXPECT_TRUE(said[0].starts_with("page 1: ")) << said[0];

@@ -59,12 +59,60 @@ TEST(ExportStages, EachBeginsAtZeroEndsAtOneAndIsToldOnce) {
   for (const Told& t : told) {
     in_progress.push_back(t.stage);
     EXPECT_EQ(t.last, 1) << t.stage;
-    // Writing images and measuring errors are parts of baking, and are told at its end.
+    // Images are written, and errors measured, while pages are baked.
     if (t.stage != "images" && t.stage != "error") {
       EXPECT_EQ(t.first, 0) << t.stage;
     }
   }
   EXPECT_EQ(in_progress, reported);
+}
+
+// With one thread, all pages but the last are written before that one is baked.
+TEST(ExportStages, ImagesTellHowManyAreWrittenOnceAllPagesAreBaked) {
+  const TempFolder folder;
+  std::vector<double> images;
+  double baking = 0;
+  Context context;
+  context.threads = 1;
+  context.progress = [&](std::string_view stage, double fraction) {
+    if (stage == "baking") baking = fraction;
+    if (stage != "images") return;
+    EXPECT_EQ(baking, 1);
+    images.push_back(fraction);
+  };
+  ExportOptions options = small_pages(folder / "w.obj");
+  options.atlases = 3;
+  options.texel_metres = 0.01;
+  options.threshold = 0;
+  const auto scene = lit_scene(together(grid(4, 4), moved(grid(4, 4), 1, {2, 0, 0})));
+  const auto report = export_world(scene, options, {}, context);
+  ASSERT_TRUE(report.ok()) << report.status().message();
+  const auto pages = double(report->pages.size());
+  ASSERT_GE(pages, 2);
+  ASSERT_GE(images.size(), 2u);
+  EXPECT_EQ(images.front(), (pages - 1) / pages);
+  EXPECT_EQ(images.back(), 1);
+}
+
+// What the plan skips is not among the stages that ran.
+TEST(ExportStages, WhatIsSkippedDoesNotRun) {
+  const TempFolder folder;
+  for (const double threshold : {0.0, 2.0 / 255})
+    for (const bool lit : {false, true}) {
+      LoadedScene scene = lit_scene(grid(2, 2));
+      if (!lit) scene.scene.illumination.clear();
+      ExportOptions options = small_pages(folder / "w.obj");
+      options.threshold = threshold;
+      const auto report = export_world(scene, options, {}, {});
+      ASSERT_TRUE(report.ok()) << report.status().message();
+      bool sizing = false;
+      for (const StageReport& stage : report->stages) {
+        for (const PlanStep& step : report->plan.steps)
+          EXPECT_TRUE(step.run || step.stage != stage.stage) << stage.stage;
+        sizing |= stage.stage == "sizing";
+      }
+      EXPECT_EQ(sizing, lit && threshold == 0);
+    }
 }
 
 // All that is left then is to give the files their names.

@@ -90,7 +90,7 @@ TEST(Schedule, ALightThatRestsAtTheLargestDistanceIsFollowedThere) {
   }
 }
 
-TEST(Schedule, AsksForNoMoreThanTwoIntervalsAhead) {
+TEST(Schedule, AsksForNoMoreThanThreeIntervalsAhead) {
   for (const double step : {0.0, 0.1, 1.0, 30.0})
     for (const double degrees : {0.0, 3.0, 500.0})
       for (const int frames : {1, 2, 7}) {
@@ -102,7 +102,7 @@ TEST(Schedule, AsksForNoMoreThanTwoIntervalsAhead) {
         for (int f = 0; f < 40; ++f)
           schedule.next(circled(f * step), [&](int n) {
             EXPECT_GE(n, 0);
-            EXPECT_LE(n, 2 * std::max(o.interval_frames, o.max_frames));
+            EXPECT_LE(n, 3 * std::max(o.interval_frames, o.max_frames) + 1);
             return circled((f + n) * step);
           });
       }

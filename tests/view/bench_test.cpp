@@ -6,8 +6,12 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <functional>
+#include <map>
 #include <nlohmann/json.hpp>
+#include <set>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -42,8 +46,19 @@ TEST_F(Bench, MeasuresEveryCombinationAndWritesItsFiles) {
   stopped.cancel = &stop;
   EXPECT_EQ(bench_times(first, path, o, stopped).status().code(), ErrorCode::cancelled);
   EXPECT_EQ(bench_errors(first, path, o, stopped).status().code(), ErrorCode::cancelled);
-  r.times = bench_times(first, path, o).value();
-  r.errors = bench_errors(first, path, o).value();
+  std::map<std::string, std::vector<double>, std::less<>> told;
+  Context telling;
+  telling.progress = [&](std::string_view stage, double f) {
+    told[std::string(stage)].push_back(f);
+  };
+  r.times = bench_times(first, path, o, telling).value();
+  r.errors = bench_errors(first, path, o, telling).value();
+  EXPECT_EQ(told.size(), 2u);
+  for (const auto& [stage, fractions] : told) {
+    EXPECT_TRUE(std::is_sorted(fractions.begin(), fractions.end())) << stage;
+    EXPECT_GE(std::set(fractions.begin(), fractions.end()).size(), 4u) << stage;
+    EXPECT_EQ(fractions.back(), 1) << stage;
+  }
   EXPECT_EQ(r.times.runs.size(), 3u * 7u);
   EXPECT_EQ(r.errors.size(), 2u * 5u);
   for (const BenchRun& run : r.times.runs) {

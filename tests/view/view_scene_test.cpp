@@ -1,12 +1,16 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <glm/trigonometric.hpp>
 #include <set>
+#include <string_view>
 #include <tuple>
+#include <vector>
 
 #include "libatlas/scene/check_scene.h"
+#include "libatlas/view/start_camera.h"
 #include "libatlas/view/view_scene.h"
 #include "tests/view/shapes.h"
 
@@ -325,6 +329,60 @@ TEST(ViewScene, ScenesOutOfStepAreRefusedByName) {
   v = make_view_scene(scene, {});
   ASSERT_FALSE(v.ok());
   EXPECT_NE(v.status().message().find("illumination"), std::string::npos) << v.status().message();
+}
+
+// Returns a row of rooms with that many triangles at least.
+Scene rooms(std::size_t triangles) {
+  const Scene one = room();
+  Scene row = one;
+  while (row.triangle_count() < triangles) {
+    const auto before = std::uint32_t(row.positions.size());
+    for (const Vec3f& p : one.positions)
+      row.positions.push_back({p.x + 20 * float(row.triangle_count()), p.y, p.z});
+    for (const std::uint32_t i : one.indices) row.indices.push_back(before + i);
+    const auto repeat = [](auto& all, const auto& some) {
+      all.insert(all.end(), some.begin(), some.end());
+    };
+    repeat(row.illumination, one.illumination);
+    repeat(row.triangle_material, one.triangle_material);
+    repeat(row.triangle_object, one.triangle_object);
+    repeat(row.texcoord_indices, one.texcoord_indices);
+  }
+  return row;
+}
+
+// Scenes of millions of triangles take seconds.
+TEST(ViewScene, CanBeCancelledThroughoutAndTellsItsProgress) {
+  const Scene scene = rooms(50'000);
+  std::vector<double> told;
+  Context context;
+  context.progress = [&](std::string_view stage, double fraction) {
+    EXPECT_EQ(stage, "preparing");
+    told.push_back(fraction);
+  };
+  ASSERT_TRUE(make_view_scene(scene, {}, context).ok());
+  EXPECT_TRUE(std::is_sorted(told.begin(), told.end()));
+  EXPECT_EQ(told.back(), 1);
+  for (std::size_t calls = 0; calls < told.size(); ++calls) {
+    std::atomic<bool> stop = calls == 0;
+    std::size_t after = 0, seen = 0;
+    context.cancel = &stop;
+    context.progress = [&](std::string_view, double) {
+      after += stop;
+      stop = stop || ++seen == calls;
+    };
+    EXPECT_EQ(make_view_scene(scene, {}, context).status().code(), ErrorCode::cancelled) << calls;
+    EXPECT_LE(after, 4u) << "of " << told.size() << ", stopped at " << calls;
+  }
+}
+
+TEST(ViewScene, ACancelledStartReturnsACamera) {
+  const ViewScene view = *make_view_scene(room(), {});
+  std::atomic<bool> stop = true;
+  Context context;
+  context.cancel = &stop;
+  const Camera camera = start_camera(view, {0, 1, 0}, 60, context);
+  EXPECT_TRUE(std::isfinite(camera.eye.x + camera.eye.y + camera.eye.z));
 }
 
 }  // namespace

@@ -72,6 +72,22 @@ TEST_F(AtlasExport, LuminanceNeedsNoTexelButReplacesNoTexture) {
   }
 }
 
+// It is read for its path only.
+TEST_F(AtlasExport, DepfileListsNoTextureThatLuminanceNeedsNot) {
+  write("scene.obj", kTextured);
+  write("a b.mtl", "newmtl wood\nmap_Kd wood.png\n");
+  ASSERT_TRUE(write_png(dir_ / "wood.png", Image8(2, 2, 3, 77), {}).ok());
+  for (const char* quantity : {"luminance", "colour", "illuminance"}) {
+    const RunResult r = run(fmt::format(
+        "{0}/scene.obj -o {0}/v.wrl --depfile {0}/v.d --quantity {1}", dir_.string(), quantity));
+    ASSERT_EQ(r.exit_code, 0) << r.output;
+    const std::string rule = slurp(dir_ / "v.d");
+    EXPECT_NE(rule.find("b.mtl"), std::string::npos) << rule;
+    EXPECT_EQ(rule.find("wood.png") != std::string::npos, std::string(quantity) == "illuminance")
+        << rule;
+  }
+}
+
 // Otherwise it would be noticed only when the first page is written.
 TEST_F(AtlasExport, AMissingModuleIsToldBeforeTheFirstStage) {
   const fs::path scene = write("box.obj", lit_box(2));

@@ -283,6 +283,19 @@ TEST_F(AtlasPlay, AWindowShowsItsPanelAndCloses) {
   EXPECT_TRUE(fs::exists(dir_ / "film/frame00004.png")) << "every frame is recorded";
 }
 
+TEST_F(AtlasPlay, AWindowEndsByCtrlC) {
+  const Xvfb server;
+  if (!server.runs()) GTEST_SKIP() << "Xvfb is not installed";
+  const int status = std::system(
+      fmt::format("cd '{0}' && env {1} XDG_RUNTIME_DIR='{0}' LSAN_OPTIONS=detect_leaks=0 timeout "
+                  "--preserve-status -s INT 4 '{2}' roof.obj --width 160 --height 120 --map 64 "
+                  ">out 2>err",
+                  dir_.string(), server.environment(), ATLAS_PLAY)
+          .c_str());
+  ASSERT_TRUE(WIFEXITED(status));
+  EXPECT_EQ(WEXITSTATUS(status), 130) << text_of(dir_ / "err");
+}
+
 TEST_F(AtlasPlay, ADisplayThatGoes) {
   Xvfb server;
   if (!server.runs()) GTEST_SKIP() << "Xvfb is not installed";

@@ -121,13 +121,32 @@ TEST_F(AtlasPlay, OutputsReplaceNoTextureOfTheScene) {
   EXPECT_EQ(run(std::string("t.obj -q --screenshot p.png --record other") + kSmall).exit_code, 0);
 }
 
+// F12 and the panel's box write files that no option names. Without a window they are not written.
+TEST_F(AtlasPlay, AWindowReplacesNoTextureByFilesThatWereNotNamed) {
+  fs::create_directories(dir_ / "recording");
+  for (const char* name : {"screenshot.png", "recording/frame00001.png"}) {
+    ASSERT_TRUE(write_png(dir_ / name, Image8(4, 4, 3, 128), {}).ok());
+    std::ofstream(dir_ / "t.mtl") << "newmtl a\nmap_Kd " << name << "\n";
+    std::ofstream(dir_ / "t.obj") << "mtllib t.mtl\nv -2 0 2\nv 2 0 2\nv 0 0 -2\nvt 0 0\nvt 1 0\n"
+                                     "usemtl a\nf 1/1 2/2 3/1\n";
+    const RunResult window = run("t.obj", "-u DISPLAY -u WAYLAND_DISPLAY");
+    EXPECT_EQ(window.exit_code, 2) << name;
+    EXPECT_TRUE(holds(window.errors, std::string(name).substr(0, 9))) << window.errors;
+    EXPECT_EQ(run(std::string("t.obj -q") + kSmall).exit_code, 0) << name;
+  }
+}
+
 TEST_F(AtlasPlay, OptionsThatWouldChangeNothingAreRefused) {
   for (const auto& [options, words] :
        {std::pair("--plan --screenshot p.png", "--plan draws nothing, so --screenshot"),
         {"--plan --record film", "--plan draws nothing, so --record"},
         {"--plan --bench b", "--plan draws nothing, so --bench"},
         {"--bench b --frames 3", "--frames is not for --bench (give --bench-frames)"},
-        {"--bench b --close-after 3", "--close-after is not for --bench"}}) {
+        {"--bench b --close-after 3", "--close-after is not for --bench"},
+        {"--bench b --shading ward", "--shading is not for --bench (give --bench-shadings)"},
+        {"--bench b --shadows hold", "--shadows is not for --bench (give --bench-methods)"},
+        {"--bench b --visibility", "--visibility is not for --bench"},
+        {"", "--software is for --headless"}}) {
     const RunResult r = run(std::string("roof.obj --software ") + options);
     EXPECT_EQ(r.exit_code, 2) << options;
     EXPECT_TRUE(holds(r.errors, words)) << r.errors;
