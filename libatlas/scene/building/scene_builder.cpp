@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <set>
 #include <unordered_map>
 
 #include "libatlas/core/glm_bridge.h"
@@ -219,6 +220,17 @@ void SceneBuilder::note_file(const RawTexture& raw) {
   if (raw.bytes.empty() && std::filesystem::exists(raw.path, error)) files.push_back(raw.path);
 }
 
+// Returns which of `other_files` exist and are not among `files`, each once.
+std::vector<std::filesystem::path> SceneBuilder::unread_files() const {
+  std::set<std::filesystem::path> known(files.begin(), files.end());
+  std::vector<std::filesystem::path> unread;
+  for (const std::filesystem::path& path : other_files) {
+    std::error_code error;  // a path that cannot be examined does not exist
+    if (std::filesystem::exists(path, error) && known.insert(path).second) unread.push_back(path);
+  }
+  return unread;
+}
+
 void SceneBuilder::load_textures(Scene& scene, bool encoded) {
   std::vector<std::int32_t> loaded(textures.size(), -1);
   for (std::size_t i = 0; i < textures.size(); ++i) {
@@ -303,6 +315,7 @@ Result<LoadedScene> SceneBuilder::finish(const ReadOptions& options, const Conte
   if (Status s = place_positions(scene); !s.ok()) return s;
   std::vector<Vec3d>().swap(positions);
   if (context.cancelled()) return Status::cancelled();
+  for (const RawTexture& texture : textures) other_files.push_back(texture.path);
   keep_used(scene);
   move_texcoords();
   place_materials(options, scene);
@@ -310,6 +323,7 @@ Result<LoadedScene> SceneBuilder::finish(const ReadOptions& options, const Conte
   if (options.load_textures && (options.unlit_textures || !illumination.empty())) {
     load_textures(scene, options.encoded_textures);
   }
+  loaded.unread_files = unread_files();
   scene.indices = std::move(indices_);
   place_normals(scene);
   scene.source = std::move(source);

@@ -86,6 +86,8 @@ class SceneBuilder {
   NamedFiles named_files;                    // finds material libraries and their textures
   LossCounts not_read;                       // Scene::not_read, without the materials' MTL lines
   std::vector<std::filesystem::path> files;  // LoadedScene::files
+  // What the file names besides `files` and `textures`; part of LoadedScene::unread_files.
+  std::vector<std::filesystem::path> other_files;
   UvPages uv_pages;                          // what the file says of the pages of its uvs
   std::optional<FileView> view;              // LoadedScene::view
 
@@ -208,6 +210,7 @@ class SceneBuilder {
   void place_uv_aspects(LoadedScene& loaded) const;
   void place_materials(const ReadOptions& options, Scene& scene);
   void note_file(const RawTexture& raw);
+  std::vector<std::filesystem::path> unread_files() const;
   void load_textures(Scene& scene, bool encoded);
   bool keep_encoded(RawTexture& raw, Scene& scene) const;
   Result<TextureImage> load_texture(const RawTexture& raw) const;

@@ -121,7 +121,8 @@ class VrmlParser : VrmlScanner {
       if (type == "Switch" || type == "LOD") return choice(type == "LOD", matrix, depth);
       if (type == "WorldInfo") return world_info();
       if (type == "Viewpoint") return viewpoint(matrix);
-      if (type == "Inline") ignored(type);  // the shapes of another file
+      if (type == "Inline")  // the shapes of another file
+        return ignored(type), note_vrml_files(*this, builder_);
       skip();
     });
   }
