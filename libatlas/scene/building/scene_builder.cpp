@@ -21,6 +21,7 @@ namespace atlas {
 namespace {
 
 constexpr std::uint32_t kUnset = 0xffffffffu;
+constexpr double kPlaced = 0.5;  // share of the time of finish() until textures are loaded
 
 // Renumbers ids by first use. Returns the old id of each new one.
 std::vector<std::uint32_t> compact(std::vector<std::uint32_t>& ids, std::size_t count) {
@@ -231,9 +232,11 @@ std::vector<std::filesystem::path> SceneBuilder::unread_files() const {
   return unread;
 }
 
-void SceneBuilder::load_textures(Scene& scene, bool encoded) {
+void SceneBuilder::load_textures(Scene& scene, bool encoded, const Context& context) {
   std::vector<std::int32_t> loaded(textures.size(), -1);
   for (std::size_t i = 0; i < textures.size(); ++i) {
+    if (context.cancelled()) return;
+    context.report("reading", kPlaced + (1 - kPlaced) * double(i) / double(textures.size()));
     RawTexture& raw = textures[i];
     note_file(raw);
     if (encoded && keep_encoded(raw, scene)) {
@@ -296,6 +299,7 @@ void SceneBuilder::place_uv_aspects(LoadedScene& loaded) const {
 }
 
 Result<LoadedScene> SceneBuilder::finish(const ReadOptions& options, const Context& context) {
+  if (context.cancelled()) return Status::cancelled();
   if (triangle_count() == 0) {
     const std::string why = defects.triangles_left_out == 0
                                 ? "it holds no face"
@@ -320,8 +324,9 @@ Result<LoadedScene> SceneBuilder::finish(const ReadOptions& options, const Conte
   move_texcoords();
   place_materials(options, scene);
   place_uv_aspects(loaded);
+  context.report("reading", kPlaced);
   if (options.load_textures && (options.unlit_textures || !illumination.empty())) {
-    load_textures(scene, options.encoded_textures);
+    load_textures(scene, options.encoded_textures, context);
   }
   loaded.unread_files = unread_files();
   scene.indices = std::move(indices_);

@@ -22,7 +22,7 @@ double colour_scale(PlyType type) {
 class PlyParser {
  public:
   PlyParser(const FileBytes& bytes, const PlyHeader& header, SceneBuilder& builder)
-      : header_(header), numbers_(bytes, header), builder_(builder) {
+      : header_(header), numbers_(bytes, header), builder_(builder), all_bytes_(bytes.size) {
     builder.objects.push_back({});
     for (const std::string& name : header.texture_files) {
       const fs::path path = fs::path(builder.file).parent_path() / name;
@@ -83,7 +83,10 @@ class PlyParser {
 
   // Reads one element: scalars into scalars_, lists into lists_.
   Status read_element(const Context& context) {
-    if (index_ % 65536 == 0 && context.cancelled()) return Status::cancelled();
+    if (index_ % 16384 == 0) {
+      if (context.cancelled()) return Status::cancelled();
+      context.report("reading", 1 - double(numbers_.bytes_left()) / double(all_bytes_));
+    }
     numbers_.begin_element();
     line_ = numbers_.line();
     for (std::size_t i = 0; i < element_->properties.size(); ++i) {
@@ -339,6 +342,7 @@ class PlyParser {
   const PlyHeader& header_;
   PlyNumbers numbers_;
   SceneBuilder& builder_;
+  std::size_t all_bytes_;
   const PlyElement* element_ = nullptr;
   std::uint64_t index_ = 0;
   std::uint32_t line_ = 0;  // of the current element, in ascii files

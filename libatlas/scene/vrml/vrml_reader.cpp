@@ -307,6 +307,9 @@ class VrmlParser : VrmlScanner {
     builder_.check_positions(
         [&](std::size_t i) { return fmt::format("{}: vertex {}", builder_.file, i); });
     for (std::size_t i = 0; i < shapes_.size(); ++i) {
+      if (context_.cancelled()) return;  // so says SceneBuilder::finish()
+      const double done = double(i) / double(shapes_.size());
+      context_.report("reading", kScanned + (1 - kScanned) * done);
       add_faces(shapes_[i], i);
       shapes_[i] = {};
     }

@@ -101,7 +101,13 @@ std::vector<std::int32_t> VrmlScanner::indices() {
 void VrmlScanner::end_numbers() {
   if (peek() != "]") fail(fmt::format("'{}' is not a number", start_of(peek())));
   expect("]");
+  tell();
+}
+
+void VrmlScanner::tell() const {
   if (context_.cancelled()) throw MalformedVrml();
+  const double done = double(at_ - begin_) / double(end_ - begin_);
+  if (uses_ == 0) context_.report("reading", kScanned * done);
 }
 
 glm::dvec4 VrmlScanner::row(int width) {

@@ -45,6 +45,7 @@ class VrmlScanner {
   std::vector<double> list(std::size_t width);
   // Reads `[ indices ]`. What is no index of a list becomes kNoIndex.
   std::vector<std::int32_t> indices();
+  static constexpr double kScanned = 0.8;  // share of the time until faces are added
   static constexpr std::int32_t kNoIndex = std::numeric_limits<std::int32_t>::min();
   glm::dvec4 row(int width);
 
@@ -113,10 +114,16 @@ class VrmlScanner {
   void numbers(const Add& add) {
     expect("[");
     double value;
-    while (number(value)) add(value);
+    for (std::size_t count = 1; number(value); ++count) {
+      add(value);
+      if (count % 65536 == 0) tell();
+    }
     end_numbers();
   }
   void end_numbers();
+  // Reports how much of the text is read, unless a USE leads back in it. Throws if the work is
+  // cancelled.
+  void tell() const;
   // Returns the type of the node that begins with `token`, and the name that DEF gives it.
   std::string_view type_of(std::string_view token, std::string_view& name);
   struct Definition {
