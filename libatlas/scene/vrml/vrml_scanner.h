@@ -48,6 +48,8 @@ class VrmlScanner {
   static constexpr double kScanned = 0.8;  // share of the time until faces are added
   static constexpr std::int32_t kNoIndex = std::numeric_limits<std::int32_t>::min();
   glm::dvec4 row(int width);
+  // Reads an integer, which may be hexadecimal.
+  double integer();
 
   // Calls field(name) for each field up to the closing bracket. If it returns false, the field's
   // value is skipped.
@@ -109,12 +111,14 @@ class VrmlScanner {
   void check_field(std::string_view token);
   void skip_value();
   bool number(double& value);
-  // Reads `[ numbers ]`, and calls add(number) for each.
+  // Reads the same, or a hexadecimal integer.
+  bool integer(double& value);
+  // Reads `[ numbers ]` by `read`, one of the two above, and calls add(number) for each.
   template <class Add>
-  void numbers(const Add& add) {
+  void numbers(bool (VrmlScanner::*read)(double&), const Add& add) {
     expect("[");
     double value;
-    for (std::size_t count = 1; number(value); ++count) {
+    for (std::size_t count = 1; (this->*read)(value); ++count) {
       add(value);
       if (count % 65536 == 0) tell();
     }
