@@ -157,6 +157,7 @@ Status check_outputs(const app::ExportCommand& command) {
 Status check_files_stay(const LoadedScene& loaded, const app::ExportCommand& command) {
   const std::filesystem::path& target = command.options.target;
   std::vector<std::filesystem::path> known = loaded.files;
+  known.insert(known.end(), loaded.unread_files.begin(), loaded.unread_files.end());
   for (const Texture& texture : loaded.scene.textures) known.push_back(texture.path);
   for (const std::filesystem::path& file : known)
     for (const std::filesystem::path& output :

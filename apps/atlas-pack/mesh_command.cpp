@@ -250,6 +250,16 @@ Status check_outputs(const PackCommand& c) {
   return check_preview(c);
 }
 
+// Refuses outputs that would overwrite what the mesh consists of: which files these are is known
+// only when it has been read. Textures are among them, though they are not read.
+Status check_files_stay(const PackCommand& c, const LoadedScene& loaded) {
+  for (const auto* files : {&loaded.files, &loaded.unread_files})
+    for (const auto& file : *files)
+      for (const auto& output : {c.output, material_file(c.output), c.preview, c.depfile})
+        if (Status s = check_output(output, {file}); !s.ok()) return s;
+  return {};
+}
+
 // Returns the rule that tells which files the mesh was made from; empty if none is asked for.
 Result<std::string> rule_of(const PackCommand& c, const LoadedScene& loaded) {
   if (c.depfile.empty()) return std::string();
@@ -272,9 +282,7 @@ Result<PackedAtlas> run_mesh(const PackCommand& c, const Context& context) {
   Scene& scene = loaded->scene;
   if (c.uv_aspect) loaded->uv_aspect = *c.uv_aspect, loaded->material_uv_aspects.clear();
   widen_uvs(*loaded);
-  for (const auto& file : loaded->files)
-    for (const auto& output : {material_file(c.output), c.depfile})
-      if (Status s = check_output(output, {file}); !s.ok()) return s;
+  if (Status s = check_files_stay(c, *loaded); !s.ok()) return s;
   for (const std::string& line : loaded->defects.lines()) context.say("defect: " + line);
   for (const std::string& line : lost_in_obj(scene)) context.say("not kept: " + line);
   if (scene.texcoord_indices.empty())

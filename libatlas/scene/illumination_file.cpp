@@ -111,6 +111,9 @@ Status read_illumination(const fs::path& path, SceneBuilder& builder, const Cont
                     path.string(), values->size(), builder.positions.size(), builder.file)};
   }
   builder.files.insert(builder.files.end(), other.files.begin(), other.files.end());
+  for (const RawTexture& texture : other.textures) other.other_files.push_back(texture.path);
+  builder.other_files.insert(builder.other_files.end(), other.other_files.begin(),
+                             other.other_files.end());
   // Defects of the illumination are now those of this file, since the mesh's own is not used.
   auto& defects = builder.defects.defects;
   std::erase_if(defects, of_illumination);

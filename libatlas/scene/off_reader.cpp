@@ -85,7 +85,12 @@ FaceCorners corners_of(const std::vector<std::int64_t>& vertices, const OffLayou
 class TextOff {
  public:
   TextOff(const FileBytes& bytes, TextScanner scan, OffLayout layout, SceneBuilder& builder)
-      : end_(bytes.end()), scan_(scan), layout_(layout), builder_(builder), colours_(builder) {}
+      : begin_(bytes.begin()),
+        end_(bytes.end()),
+        scan_(scan),
+        layout_(layout),
+        builder_(builder),
+        colours_(builder) {}
 
   Status run(const Context& context) {
     if (Status s = read_counts(); !s.ok()) return s;
@@ -152,7 +157,10 @@ class TextOff {
     builder_.texcoords.reserve(layout_.texture ? vertices_ : 0);
     std::vector<std::string> bad;  // places of the first unusable positions
     for (std::uint64_t i = 0; i < vertices_; ++i) {
-      if (i % 65536 == 0 && context.cancelled()) return Status::cancelled();
+      if (i % 16384 == 0) {
+        if (context.cancelled()) return Status::cancelled();
+        report(context);
+      }
       if (!next_filled_line()) {
         return cut_short(builder_.file,
                          fmt::format("vertex {} of {} is missing", i + 1, vertices_));
@@ -174,6 +182,10 @@ class TextOff {
     auto next_bad = bad.begin();
     builder_.check_positions([&](std::size_t) { return *next_bad++; });
     return {};
+  }
+
+  void report(const Context& context) const {
+    context.report("reading", double(scan_.position() - begin_) / double(end_ - begin_));
   }
 
   Status add_vertex(const double* n, int count, bool whole) {
@@ -202,7 +214,10 @@ class TextOff {
     builder_.reserve_triangles(faces_, layout_.texture);
     std::vector<std::int64_t> corners;
     for (std::uint64_t f = 0; f < faces_; ++f) {
-      if (f % 65536 == 0 && context.cancelled()) return Status::cancelled();
+      if (f % 16384 == 0) {
+        if (context.cancelled()) return Status::cancelled();
+        report(context);
+      }
       if (!next_filled_line()) {
         return cut_short(builder_.file, fmt::format("face {} of {} is missing", f + 1, faces_));
       }
@@ -244,7 +259,7 @@ class TextOff {
     return scan_.integer_here(value) && scan_.at_blank();
   }
 
-  const char* end_;
+  const char *begin_, *end_;
   TextScanner scan_;
   OffLayout layout_;
   SceneBuilder& builder_;
@@ -313,6 +328,7 @@ class BinaryOff {
     builder_.positions.reserve(vertices_);
     Colours colours(builder_);
     for (std::size_t i = 0; i < vertices_; ++i) {
+      if (i % 65536 == 0 && context.cancelled()) return Status::cancelled();
       std::size_t at = 3 + i * vertex_words();
       builder_.positions.push_back({number(at), number(at + 1), number(at + 2)});
       if (layout_.normal && builder_.wants_normals)
@@ -332,7 +348,10 @@ class BinaryOff {
     std::vector<std::int64_t> corners;
     std::size_t at = first_face_;
     for (std::size_t f = 0; f < faces_; ++f, at = *after_face(at)) {
-      if (f % 65536 == 0 && context.cancelled()) return Status::cancelled();
+      if (f % 65536 == 0) {
+        if (context.cancelled()) return Status::cancelled();
+        context.report("reading", double(at) / double(words()));
+      }
       corners.clear();
       for (std::size_t k = 0; k < word(at); ++k) corners.push_back(word(at + 1 + k));
       builder_.add_face(corners_of(corners, layout_, builder_),

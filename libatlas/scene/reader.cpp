@@ -6,6 +6,7 @@
 
 #include "libatlas/core/clock.h"
 #include "libatlas/core/file_extension.h"
+#include "libatlas/core/progress.h"
 #include "libatlas/scene/building/formats.h"
 #include "libatlas/scene/gltf/gltf_source.h"
 
@@ -69,21 +70,29 @@ Result<LoadedScene> read_scene(const fs::path& path, const ReadOptions& given,
   builder.wants_textures = options.load_textures;
   builder.wants_normals = options.normals;
   builder.wants_rest = options.rest;
-  if (Status s = read_by_extension(path, builder, context); !s.ok()) return s;
-  if (!options.illumination_file.empty()) {
-    if (Status s = read_illumination(options.illumination_file, builder, context); !s.ok())
+  // Shares of the stage: of the scene's file, then of that of the illumination.
+  const bool other_light = !options.illumination_file.empty();
+  constexpr double kParsed = 0.8;
+  const double own = other_light ? kParsed / 2 : kParsed;
+  const auto part = [&](double from, double to) {
+    return part_of_stage(context, "reading", from, to);
+  };
+  if (Status s = read_by_extension(path, builder, part(0, own)); !s.ok()) return s;
+  if (other_light) {
+    if (Status s = read_illumination(options.illumination_file, builder, part(own, kParsed));
+        !s.ok())
       return s;
   }
   const std::shared_ptr<GltfSource> source = builder.source;
-  auto result = builder.finish(options, context);
+  auto result = builder.finish(options, part(kParsed, 1));
   if (result.ok()) result->files = std::move(builder.files);
   if (result.ok() && source) {
     source->image_texture = std::move(builder.texture_numbers);
-    source->other_light = !options.illumination_file.empty();
+    source->other_light = other_light;
     source->positions_mark = positions_mark(result->scene);
   }
   return_freed_memory();  // half of the memory that reading took
-  context.report("reading", 1);
+  if (result.ok()) context.report("reading", 1);
   return result;
 }
 

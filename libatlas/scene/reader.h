@@ -51,6 +51,10 @@ struct LoadedScene {
   // Files that were read besides the scene's own and the illumination file: material libraries,
   // buffers, textures, also those that could not be decoded. Missing files are not listed.
   std::vector<std::filesystem::path> files = {};
+  // Existing files that the scene names, but that were not read: textures that the options leave
+  // out or that no triangle uses, other maps of materials, and files that are not supported.
+  // Programs must not write over them.
+  std::vector<std::filesystem::path> unread_files = {};
   // Width / height of the pages that the uvs were made for, if an OBJ, glTF or VRML file says so as
   // libatlas writes it (scene/uv_page.h) and all pages have one shape; else 0.
   double uv_aspect = 0;

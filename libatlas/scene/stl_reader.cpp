@@ -19,6 +19,7 @@ namespace atlas {
 namespace fs = std::filesystem;
 namespace {
 
+constexpr double kJoining = 0.9;                   // share of the time until faces are added
 constexpr std::size_t kHeader = 84, kRecord = 50;  // bytes of a binary file
 
 bool same_word(std::string_view word, std::string_view lower) {
@@ -107,7 +108,10 @@ Status read_binary(const FileBytes& bytes, SceneBuilder& builder, const Context&
   soup.reserve(count);
   const auto place = [&](std::size_t t) { return fmt::format("{}: triangle {}", builder.file, t); };
   for (std::size_t t = 0; t < count; ++t) {
-    if (t % 65536 == 0 && context.cancelled()) return Status::cancelled();
+    if (t % 16384 == 0) {
+      if (context.cancelled()) return Status::cancelled();
+      context.report("reading", kJoining * double(t) / double(count));
+    }
     float n[12];  // the normal comes first
     std::memcpy(n, bytes.begin() + kHeader + kRecord * t, sizeof n);
     for (int c = 3; c < 12; c += 3) {
@@ -117,6 +121,7 @@ Status read_binary(const FileBytes& bytes, SceneBuilder& builder, const Context&
   soup.finish_points();
   builder.reserve_triangles(count, false);
   for (std::size_t t = 0; t < count; ++t) {
+    if (t % 65536 == 0 && context.cancelled()) return Status::cancelled();
     const auto c = soup.corners().subspan(3 * t, 3);
     const std::int64_t corners[3] = {c[0], c[1], c[2]};
     builder.add_face({corners}, [&] { return place(t); });
@@ -129,6 +134,7 @@ class TextStl {
  public:
   TextStl(const FileBytes& bytes, SceneBuilder& builder)
       : scan_(bytes.begin(), bytes.end(), TextScanner::Lines::never_joined),
+        begin_(bytes.begin()),
         end_(bytes.end()),
         builder_(builder),
         soup_(builder) {
@@ -190,7 +196,11 @@ class TextStl {
       const std::string_view word = next_word();
       if (same_word(word, "endsolid")) break;
       if (!same_word(word, "facet")) return unexpected(word, "'facet' or 'endsolid'");
-      if (faces_.size() % 65536 == 0 && context.cancelled()) return Status::cancelled();
+      if (faces_.size() % 16384 == 0) {
+        if (context.cancelled()) return Status::cancelled();
+        context.report("reading",
+                       kJoining * double(scan_.position() - begin_) / double(end_ - begin_));
+      }
       if (Status s = read_facet(); !s.ok()) return s;
     }
     rest_of_line();
@@ -242,7 +252,7 @@ class TextStl {
   }
 
   TextScanner scan_;
-  const char* end_;
+  const char *begin_, *end_;
   SceneBuilder& builder_;
   Soup soup_;
   std::vector<Face> faces_;

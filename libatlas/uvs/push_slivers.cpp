@@ -25,6 +25,11 @@ constexpr std::size_t kMostAtPlainUv = 64;  // a uv with more triangles is a hub
 // area needed is larger by more than that than what rounding takes (open_area()).
 constexpr double kLeeway = 1e-3;
 
+// How often the triangles at a hub are looked at because of its moves, on average. Those of a fan
+// in shape take a tenth of this. Where all of a fan is far smaller than the steps between
+// floats, each of its triangles closes at every push of another one.
+constexpr std::size_t kMostLooks = 1000;
+
 // All triangles at a hub move with it, but hardly. Looking at each of them after each push would
 // take time that grows with the square of their number. Each open triangle tells instead how far
 // its hub may travel, along whatever path, until the triangle may lack height.
@@ -35,7 +40,7 @@ class Hubs {
     for (std::uint32_t uv = 0; uv < hub_of_.size(); ++uv) {
       if (triangles.corners_at[uv].size() <= kMostAtPlainUv) continue;
       hub_of_[uv] = std::uint32_t(hubs_.size());
-      hubs_.emplace_back();
+      hubs_.emplace_back().looks_left = kMostLooks * triangles.corners_at[uv].size();
     }
     if (!hubs_.empty()) due_.assign(corners_.size(), kNever);
   }
@@ -72,10 +77,11 @@ class Hubs {
     }
   }
 
-  // Lists the triangles at a hub that may lack height by now.
+  // Lists the triangles at a hub that may lack height by now, unless these were too many already.
   void list_due(std::uint32_t uv, std::vector<std::uint32_t>& triangles) {
     Hub& hub = hubs_[hub_of_[uv]];
-    while (!hub.waiting.empty() && hub.waiting.top().first <= hub.travelled) {
+    while (hub.looks_left > 0 && !hub.waiting.empty() && hub.waiting.top().first <= hub.travelled) {
+      --hub.looks_left;
       const auto [due, corner] = hub.waiting.top();
       hub.waiting.pop();
       if (due != due_[corner]) continue;  // an earlier entry has taken its place
@@ -90,6 +96,7 @@ class Hubs {
 
   struct Hub {
     double travelled = 0;
+    std::size_t looks_left = 0;
     std::priority_queue<Entry, std::vector<Entry>, std::greater<>> waiting;
   };
 

@@ -120,8 +120,8 @@ const Case kCases[] = {
      ErrorCode::bad_input, "holds no face"},
     {"early.ply",
      kPly + "element face 1\nproperty list uchar int vertex_indices\nelement vertex 1\n" + kXyz +
-         "end_header\n3 0 0 0\n0 0 0\n",
-     ErrorCode::unsupported, "faces come before vertices"},
+         "end_header\n3 0 0 0\n0 0\n",
+     ErrorCode::bad_input, "early.ply: vertex 1 of 1 is incomplete"},
     {"two.ply",
      kPly + "element vertex 3\n" + kXyz + "element vertex 1\n" + kXyz +
          "element face 1\nproperty list uchar int vertex_indices\nend_header\n"

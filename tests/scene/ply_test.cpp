@@ -77,6 +77,35 @@ TEST_P(PlyFormats, ReadAlike) {
   EXPECT_EQ(loaded->defects.count(DefectKind::element_ignored), 2u);
 }
 
+// The format allows any order of elements.
+TEST_P(PlyFormats, FacesMayComeBeforeVertices) {
+  const TempFolder folder;
+  const std::string faces =
+      "element face 1\nproperty list uchar int vertex_indices\nproperty list uchar float "
+      "texcoord\n";
+  const std::string strips = "element tristrips 1\nproperty list uchar int vertex_indices\n";
+  const std::string other = "element camera 1\nproperty uchar view\n";
+  const std::string vertices =
+      "element vertex 4\nproperty float x\nproperty float y\nproperty float z\n";
+  Writer w(GetParam(), faces + other + strips + vertices);
+  w.put(std::uint8_t{3});
+  for (const int v : {0, 1, 2}) w.put(std::int32_t(v));
+  w.put(std::uint8_t{6});
+  for (const int k : {0, 0, 1, 0, 1, 1}) w.put(float(k));
+  w.end().put(std::uint8_t{7}).end().put(std::uint8_t{3});
+  for (const int v : {1, 3, 2}) w.put(std::int32_t(v));
+  w.end();
+  for (const int v : {0, 1, 2, 3}) w.put(float(v % 2)).put(float(v / 2)).put(0.f).end();
+  const auto loaded = read_scene(folder.write("a.ply", w.bytes()), {}, {});
+  ASSERT_TRUE(loaded.ok()) << loaded.status().message();
+  const Scene& s = loaded->scene;
+  EXPECT_EQ(s.indices, (std::vector<std::uint32_t>{0, 1, 2, 1, 3, 2}));
+  ASSERT_EQ(s.texcoord_indices.size(), 6u);
+  EXPECT_EQ(s.texcoords[s.texcoord_indices[2]], (Vec2f{1, 1}));
+  ASSERT_EQ(loaded->defects.defects.size(), 1u);  // the camera
+  EXPECT_EQ(loaded->defects.defects[0].count, 1u);
+}
+
 TEST_P(PlyFormats, IntegerColoursAreFractions) {
   const TempFolder folder;
   for (const bool wide : {false, true}) {

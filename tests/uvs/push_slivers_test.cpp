@@ -67,6 +67,22 @@ TEST(PushSlivers, FansTakeWorkInProportionToTheirTriangles) {
   }
 }
 
+// Where a whole fan is smaller than the step between floats, each push closes all of its triangles.
+TEST(PushSlivers, TinyFansTakeLimitedWork) {
+  constexpr std::uint32_t kCount = 6000;
+  FlatMesh mesh;
+  mesh.uvs.push_back({0.5, 0.5});
+  for (std::uint32_t i = 0; i < kCount; ++i) {
+    const double angle = 2 * M_PI * i / kCount;
+    mesh.uvs.push_back({0.5 + 1e-7 * std::cos(angle), 0.5 + 1e-7 * std::sin(angle)});
+    mesh.corners.insert(mesh.corners.end(), {0, 1 + i, 1 + (i + 1) % kCount});
+  }
+  Input input(mesh);
+  const PushWork work =
+      push_slivers({mesh.corners, input.corners_at, input.exact}, mesh.uvs, 1, input.uvs);
+  EXPECT_LE(work.looks, 1300 * std::size_t(kCount));
+}
+
 TEST(OpenStacks, EachStackIsAnalysedOnce) {
   const FlatMesh mesh = leaning_slivers();
   Input input(mesh);

@@ -1,4 +1,5 @@
-// Internal: one reader for each format. It fills a builder with the file's vertices and faces.
+// Internal: one reader for each format. It fills a builder with the file's vertices and faces, and
+// reports the share that is done under any name.
 #pragma once
 
 #include "libatlas/scene/building/scene_builder.h"

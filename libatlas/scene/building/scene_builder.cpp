@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <set>
 #include <unordered_map>
 
 #include "libatlas/core/glm_bridge.h"
@@ -20,6 +21,7 @@ namespace atlas {
 namespace {
 
 constexpr std::uint32_t kUnset = 0xffffffffu;
+constexpr double kPlaced = 0.5;  // share of the time of finish() until textures are loaded
 
 // Renumbers ids by first use. Returns the old id of each new one.
 std::vector<std::uint32_t> compact(std::vector<std::uint32_t>& ids, std::size_t count) {
@@ -219,9 +221,22 @@ void SceneBuilder::note_file(const RawTexture& raw) {
   if (raw.bytes.empty() && std::filesystem::exists(raw.path, error)) files.push_back(raw.path);
 }
 
-void SceneBuilder::load_textures(Scene& scene, bool encoded) {
+// Returns which of `other_files` exist and are not among `files`, each once.
+std::vector<std::filesystem::path> SceneBuilder::unread_files() const {
+  std::set<std::filesystem::path> known(files.begin(), files.end());
+  std::vector<std::filesystem::path> unread;
+  for (const std::filesystem::path& path : other_files) {
+    std::error_code error;  // a path that cannot be examined does not exist
+    if (std::filesystem::exists(path, error) && known.insert(path).second) unread.push_back(path);
+  }
+  return unread;
+}
+
+void SceneBuilder::load_textures(Scene& scene, bool encoded, const Context& context) {
   std::vector<std::int32_t> loaded(textures.size(), -1);
   for (std::size_t i = 0; i < textures.size(); ++i) {
+    if (context.cancelled()) return;
+    context.report("reading", kPlaced + (1 - kPlaced) * double(i) / double(textures.size()));
     RawTexture& raw = textures[i];
     note_file(raw);
     if (encoded && keep_encoded(raw, scene)) {
@@ -284,6 +299,7 @@ void SceneBuilder::place_uv_aspects(LoadedScene& loaded) const {
 }
 
 Result<LoadedScene> SceneBuilder::finish(const ReadOptions& options, const Context& context) {
+  if (context.cancelled()) return Status::cancelled();
   if (triangle_count() == 0) {
     const std::string why = defects.triangles_left_out == 0
                                 ? "it holds no face"
@@ -303,13 +319,16 @@ Result<LoadedScene> SceneBuilder::finish(const ReadOptions& options, const Conte
   if (Status s = place_positions(scene); !s.ok()) return s;
   std::vector<Vec3d>().swap(positions);
   if (context.cancelled()) return Status::cancelled();
+  for (const RawTexture& texture : textures) other_files.push_back(texture.path);
   keep_used(scene);
   move_texcoords();
   place_materials(options, scene);
   place_uv_aspects(loaded);
+  context.report("reading", kPlaced);
   if (options.load_textures && (options.unlit_textures || !illumination.empty())) {
-    load_textures(scene, options.encoded_textures);
+    load_textures(scene, options.encoded_textures, context);
   }
+  loaded.unread_files = unread_files();
   scene.indices = std::move(indices_);
   place_normals(scene);
   scene.source = std::move(source);

@@ -86,8 +86,10 @@ class SceneBuilder {
   NamedFiles named_files;                    // finds material libraries and their textures
   LossCounts not_read;                       // Scene::not_read, without the materials' MTL lines
   std::vector<std::filesystem::path> files;  // LoadedScene::files
-  UvPages uv_pages;                          // what the file says of the pages of its uvs
-  std::optional<FileView> view;              // LoadedScene::view
+  // What the file names besides `files` and `textures`; part of LoadedScene::unread_files.
+  std::vector<std::filesystem::path> other_files;
+  UvPages uv_pages;              // what the file says of the pages of its uvs
+  std::optional<FileView> view;  // LoadedScene::view
 
   // What the next faces belong to.
   std::uint32_t material = 0, object = 0;
@@ -208,7 +210,8 @@ class SceneBuilder {
   void place_uv_aspects(LoadedScene& loaded) const;
   void place_materials(const ReadOptions& options, Scene& scene);
   void note_file(const RawTexture& raw);
-  void load_textures(Scene& scene, bool encoded);
+  std::vector<std::filesystem::path> unread_files() const;
+  void load_textures(Scene& scene, bool encoded, const Context& context);
   bool keep_encoded(RawTexture& raw, Scene& scene) const;
   Result<TextureImage> load_texture(const RawTexture& raw) const;
 

@@ -142,6 +142,8 @@ class GltfParser {
       return malformed(where, "the nodes form no tree");
     }
     if (context_.cancelled()) return Status::cancelled();
+    const double part = double(nodes_visited_) / double(model_.nodes.size());
+    context_.report("reading", kLoaded + (kVerticesRead - kLoaded) * part);
     on_path_[index] = true;
     const tinygltf::Node& node = model_.nodes[index];
     const Above here{parent.matrix * gltf_local_matrix(node), parent.hidden || gltf_hidden(node)};
@@ -351,7 +353,14 @@ class GltfParser {
       builder_.material = p.material;
       builder_.object = p.object;
       const std::size_t first = builder_.triangle_count();
-      for (std::size_t t = 0; t < p.corners.size() / 3; ++t) add_face(p, t);
+      for (std::size_t t = 0; t < p.corners.size() / 3; ++t) {
+        if (t % 65536 == 0) {
+          if (context_.cancelled()) return;  // so says SceneBuilder::finish()
+          const double done = double(builder_.triangle_count()) / double(triangles);
+          context_.report("reading", kVerticesRead + (1 - kVerticesRead) * done);
+        }
+        add_face(p, t);
+      }
       std::vector<std::uint32_t>().swap(p.corners);
       if (builder_.source) {  // each object has one place
         builder_.source->places[p.object].primitives.push_back(
@@ -377,6 +386,8 @@ class GltfParser {
                       [&] { return fmt::format("{}: {} triangle {}", builder_.file, p.name, t); });
   }
 
+  // Shares of the time until the model is loaded, and until faces are added.
+  static constexpr double kLoaded = 0.4, kVerticesRead = 0.7;
   static constexpr std::uint32_t kOutside = 0xffffffffu;
 
   const tinygltf::Model& model_;

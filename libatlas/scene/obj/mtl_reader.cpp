@@ -58,6 +58,7 @@ class MtlParser {
       emission_given_ = constant_ = false;
       return {};
     }
+    note_map(keyword);
     if (keyword == "illum") {
       if (inside_) parse_illumination_model();
       return {};
@@ -177,6 +178,25 @@ class MtlParser {
     const std::string_view quoted = quoted_name(name);
     return builder_.named_files.file(folder,
                                      quoted.empty() ? TextScanner::without_comment(name) : quoted);
+  }
+
+  // Notes the file of a map that is not read (map_Ks, bump, ...). Its options come first; they are
+  // skipped word by word until the rest names a file.
+  void note_map(std::string_view keyword) {
+    const std::string name = small_letters(std::string(keyword));
+    const bool other = name == "bump" || name == "disp" || name == "decal" || name == "norm" ||
+                       name == "refl" || (name.starts_with("map_") && name != "map_kd");
+    if (!other) return;
+    constexpr int kMostWords = 40;  // of options
+    std::string_view rest = scan_.rest_with_comment();
+    const bool has_options = rest.starts_with('-');
+    for (int skipped = 0; !rest.empty() && skipped < kMostWords; ++skipped, next_word(rest)) {
+      fs::path file = texture_file(rest);
+      std::error_code ignored;  // a path that cannot be examined does not exist
+      if (fs::is_regular_file(file, ignored))
+        return builder_.other_files.push_back(std::move(file));
+      if (!has_options) return;
+    }
   }
 
   // Options come first. The rest of the line is the name, which may contain blanks. A second

@@ -22,7 +22,7 @@ double colour_scale(PlyType type) {
 class PlyParser {
  public:
   PlyParser(const FileBytes& bytes, const PlyHeader& header, SceneBuilder& builder)
-      : header_(header), numbers_(bytes, header), builder_(builder) {
+      : header_(header), numbers_(bytes, header), builder_(builder), all_bytes_(bytes.size) {
     builder.objects.push_back({});
     for (const std::string& name : header.texture_files) {
       const fs::path path = fs::path(builder.file).parent_path() / name;
@@ -34,7 +34,9 @@ class PlyParser {
     if (builder.materials.empty()) builder.materials.push_back({});
   }
 
+  // Faces that come before their vertices are passed over, and read at the end.
   Status run(const Context& context) {
+    std::vector<std::pair<const PlyElement*, PlyNumbers>> early;
     for (const PlyElement& element : header_.elements) {
       if (element.properties.empty()) continue;
       element_ = &element;
@@ -42,22 +44,29 @@ class PlyParser {
         return short_file(
             fmt::format("{} of element {} are announced", element.count, element.name));
       }
-      Status status;
-      if (element.name == "vertex") {
-        status = builder_.positions.empty() ? read_vertices(context) : more_vertices();
-      } else if (element.name == "face") {
-        status = read_faces(context);
-      } else if (element.name == "tristrips") {
-        status = read_strips(context);
-      } else {
-        status = skip(context);
-      }
-      if (!status.ok()) return status;
+      const bool faces = element.name == "face" || element.name == "tristrips";
+      const bool is_early = faces && builder_.positions.empty() && vertices_follow();
+      if (is_early) early.emplace_back(&element, numbers_);
+      if (Status s = is_early ? pass(context) : read(context); !s.ok()) return s;
+    }
+    for (const auto& [element, numbers] : early) {
+      element_ = element;
+      numbers_ = numbers;
+      if (Status s = read(context); !s.ok()) return s;
     }
     return {};
   }
 
  private:
+  // Reads all of the current element.
+  Status read(const Context& context) {
+    if (element_->name == "vertex")
+      return builder_.positions.empty() ? read_vertices(context) : more_vertices();
+    if (element_->name == "face") return read_faces(context);
+    if (element_->name == "tristrips") return read_strips(context);
+    return skip(context);
+  }
+
   Status short_file(std::string_view what) const {
     return {
         ErrorCode::bad_input,
@@ -83,7 +92,10 @@ class PlyParser {
 
   // Reads one element: scalars into scalars_, lists into lists_.
   Status read_element(const Context& context) {
-    if (index_ % 65536 == 0 && context.cancelled()) return Status::cancelled();
+    if (index_ % 16384 == 0) {
+      if (context.cancelled()) return Status::cancelled();
+      context.report("reading", 1 - double(numbers_.bytes_left()) / double(all_bytes_));
+    }
     numbers_.begin_element();
     line_ = numbers_.line();
     for (std::size_t i = 0; i < element_->properties.size(); ++i) {
@@ -120,6 +132,13 @@ class PlyParser {
       if (Status s = read_element(context); !s.ok()) return s;
       builder_.defects.add(DefectKind::element_ignored, [&] { return place(); });
     }
+    return {};
+  }
+
+  Status pass(const Context& context) {
+    begin();
+    for (; index_ < element_->count; ++index_)
+      if (Status s = read_element(context); !s.ok()) return s;
     return {};
   }
 
@@ -222,10 +241,6 @@ class PlyParser {
       return {
           ErrorCode::bad_input,
           fmt::format("{}: its faces have no list vertex_indices (export faces)", builder_.file)};
-    }
-    if (builder_.positions.empty() && vertices_follow()) {
-      return {ErrorCode::unsupported,
-              fmt::format("{}: faces come before vertices (export vertices first)", builder_.file)};
     }
     const int wedge = element_->find("texcoord"), number = element_->find("texnumber");
     begin();
@@ -339,6 +354,7 @@ class PlyParser {
   const PlyHeader& header_;
   PlyNumbers numbers_;
   SceneBuilder& builder_;
+  std::size_t all_bytes_;
   const PlyElement* element_ = nullptr;
   std::uint64_t index_ = 0;
   std::uint32_t line_ = 0;  // of the current element, in ascii files

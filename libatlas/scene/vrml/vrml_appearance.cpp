@@ -12,6 +12,18 @@ namespace atlas {
 namespace fs = std::filesystem;
 namespace {
 
+bool is_there(const fs::path& path) {
+  std::error_code ignored;  // a path that cannot be examined does not exist
+  return fs::exists(path, ignored);
+}
+
+// Urls are percent-encoded, but some programs write file names as they are.
+fs::path vrml_file(const std::string& url, const std::string& world) {
+  const fs::path folder = fs::path(world).parent_path();
+  const fs::path plain = folder / url;
+  return is_there(plain) ? plain : folder / decode_uri(url);
+}
+
 class AppearanceParser {
  public:
   AppearanceParser(VrmlScanner& scan, SceneBuilder& builder) : scan_(scan), builder_(builder) {}
@@ -91,13 +103,7 @@ class AppearanceParser {
     builder_.defects.add(DefectKind::texture_unreadable, [&] {
       return fmt::format("{}:{}: {}", builder_.file, scan_.line(), type);
     });
-    scan_.expect("{");
-    scan_.skip_brackets();
-  }
-
-  static bool exists(const fs::path& path) {
-    std::error_code ignored;  // a path that cannot be examined does not exist
-    return fs::exists(path, ignored);
+    note_vrml_files(scan_, builder_);
   }
 
   // Takes the first of the urls that is a file here, or the first of all.
@@ -106,19 +112,13 @@ class AppearanceParser {
     scan_.nodes([&](std::string_view token) {
       if (token.size() < 2 || token[0] != '"') scan_.fail("a url in quotes expected");
       const std::string url(token.substr(1, token.size() - 2));
-      const fs::path found = url.empty() ? fs::path() : file_of(url);
-      if (!file.empty() && (exists(file) || !exists(found))) return;
+      const fs::path found = url.empty() ? fs::path() : vrml_file(url, builder_.file);
+      builder_.other_files.push_back(found);
+      if (!file.empty() && (is_there(file) || !is_there(found))) return;
       file = found;
       image_ = url;
     });
     if (!file.empty()) material_.texture = builder_.texture_of(file, builder_.file);
-  }
-
-  // Urls are percent-encoded, but some programs write file names as they are.
-  fs::path file_of(const std::string& url) const {
-    const fs::path folder = fs::path(builder_.file).parent_path();
-    const fs::path plain = folder / url;
-    return exists(plain) ? plain : folder / decode_uri(url);
   }
 
   TextureWrap wrap() { return scan_.next() == "FALSE" ? TextureWrap::clamp : TextureWrap::repeat; }
@@ -152,6 +152,18 @@ class AppearanceParser {
 };
 
 }  // namespace
+
+void note_vrml_files(VrmlScanner& scan, SceneBuilder& builder) {
+  scan.fields([&](std::string_view field) {
+    if (field != "url") return false;
+    scan.nodes([&](std::string_view token) {
+      if (token.size() > 2 && token[0] == '"')
+        builder.other_files.push_back(
+            vrml_file(std::string(token.substr(1, token.size() - 2)), builder.file));
+    });
+    return true;
+  });
+}
 
 RawMaterial read_vrml_appearance(std::string_view token, VrmlScanner& scan, SceneBuilder& builder) {
   return AppearanceParser(scan, builder).run(token);

@@ -13,4 +13,8 @@ namespace atlas {
 // texture is one of the builder's.
 RawMaterial read_vrml_appearance(std::string_view token, VrmlScanner& scan, SceneBuilder& builder);
 
+// Skips a node of a kind that is not read, after its type. Adds the files that it names to the
+// builder's other files.
+void note_vrml_files(VrmlScanner& scan, SceneBuilder& builder);
+
 }  // namespace atlas

@@ -3,19 +3,20 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
+#include <cmath>
 #include <glm/gtc/quaternion.hpp>
 #include <glm/mat4x4.hpp>
+#include <limits>
 #include <map>
 #include <tuple>
 
-#include "libatlas/core/bounds.h"
 #include "libatlas/core/glm_bridge.h"
 #include "libatlas/scene/building/formats.h"
 #include "libatlas/scene/files/file_bytes.h"
 #include "libatlas/scene/files/text_scanner.h"
 #include "libatlas/scene/vrml/vrml_appearance.h"
 #include "libatlas/scene/vrml/vrml_scanner.h"
+#include "libatlas/scene/vrml/vrml_shape.h"
 
 namespace atlas {
 namespace fs = std::filesystem;
@@ -23,43 +24,11 @@ namespace {
 
 constexpr int kMaxDepth = 200;  // of nested nodes
 
-// What a Shape holds, before its faces become triangles.
-struct Shape {
-  std::vector<Vec3d> points;
-  std::vector<Vec2f> uvs;
-  std::vector<std::int32_t> corners, uv_corners;  // indices, with a -1 after each face
-  std::uint32_t material = 0;
-  bool clockwise = false;  // the order of a face's corners, seen from its front
-  // Whether the file says so itself. TRUE is also the default, but many files do not say it of
-  // faces that are to be seen from both sides, so these stay double-sided.
-  bool solid = false;
-};
-
 glm::dmat4 rotation(const glm::dvec4& axis_and_angle) {
   const glm::dvec3 axis(axis_and_angle);
   const double length = glm::length(axis);
   return length > 0 ? glm::mat4_cast(glm::angleAxis(axis_and_angle.w, axis / length))
                     : glm::dmat4(1);
-}
-
-// Gives a shape without texture coordinates those of the standard: the longest side of its box runs
-// from u = 0 to 1, and the next longest along v in the same scale. Of equal sides, x comes before y
-// and y before z.
-void add_default_uvs(Shape& shape) {
-  Bounds<glm::dvec3> box;
-  for (const std::int32_t i : shape.corners)
-    if (i >= 0 && std::size_t(i) < shape.points.size() && usable_position(shape.points[i]))
-      box.add(to_glm(shape.points[i]));
-  const glm::dvec3 size = box.size();
-  std::array<int, 3> axes{0, 1, 2};
-  std::stable_sort(axes.begin(), axes.end(), [&](int a, int b) { return size[a] > size[b]; });
-  const double longest = size[axes[0]];
-  if (!(longest > 0)) return;
-  for (const Vec3d& point : shape.points) {
-    const glm::dvec3 from_low = (to_glm(point) - box.low) / longest;
-    shape.uvs.push_back({float(from_low[axes[0]]), float(from_low[axes[1]])});
-  }
-  shape.uv_corners.clear();
 }
 
 bool is_group(std::string_view type) {
@@ -121,7 +90,8 @@ class VrmlParser : VrmlScanner {
       if (type == "Switch" || type == "LOD") return choice(type == "LOD", matrix, depth);
       if (type == "WorldInfo") return world_info();
       if (type == "Viewpoint") return viewpoint(matrix);
-      if (type == "Inline") ignored(type);  // the shapes of another file
+      if (type == "Inline")  // the shapes of another file
+        return ignored(type), note_vrml_files(*this, builder_);
       skip();
     });
   }
@@ -205,7 +175,7 @@ class VrmlParser : VrmlScanner {
     const char *begin = place(), *children = nullptr;
     double chosen = lod ? 0 : -1;
     fields([&](std::string_view name) {
-      if (name == "whichChoice" && !lod) return chosen = row(1).x, true;
+      if (name == "whichChoice" && !lod) return chosen = integer(), true;
       if (name == (lod ? "level" : "choice")) children = place();
       return false;
     });
@@ -228,7 +198,7 @@ class VrmlParser : VrmlScanner {
   }
 
   void shape(const glm::dmat4& matrix) {
-    Shape result;
+    VrmlShape result;
     RawMaterial material;
     bool has_faces = false;
     fields([&](std::string_view name) {
@@ -243,6 +213,7 @@ class VrmlParser : VrmlScanner {
       return true;
     });
     if (!has_faces) return;
+    if (!result.colours.empty()) take_colours(result, material);
     if (material.texture >= 0 && result.uvs.empty()) add_default_uvs(result);
     material.double_sided = !result.solid;
     result.material = material_of(std::move(material));
@@ -251,10 +222,38 @@ class VrmlParser : VrmlScanner {
       const glm::dvec3 q = glm::dvec3(matrix * glm::dvec4(to_glm(p), 1));
       builder_.positions.push_back(from_glm(q));
     }
+    if (!result.colours.empty()) {
+      builder_.illumination.resize(base, kNoColour);
+      builder_.illumination.insert(builder_.illumination.end(), result.colours.begin(),
+                                   result.colours.end());
+    }
     bases_.push_back({base, builder_.texcoords.size(), glm::determinant(glm::dmat3(matrix)) < 0});
     builder_.texcoords.insert(builder_.texcoords.end(), result.uvs.begin(), result.uvs.end());
     result.points = {};
+    result.colours = {};
     shapes_.push_back(std::move(result));
+  }
+
+  // Colours take the place of that of the material.
+  void take_colours(VrmlShape& shape, RawMaterial& material) {
+    if (!shape.colour_per_vertex) {
+      shape.colours = {};
+      return ignored("Color of faces");
+    }
+    give_points_colours(shape);
+    material.diffuse = {1, 1, 1};
+  }
+
+  // Sets points without a colour to 0 in a scene where others have one.
+  void finish_colours() {
+    if (builder_.illumination.empty()) return;
+    builder_.illumination.resize(builder_.positions.size(), kNoColour);
+    for (std::size_t i = 0; i < builder_.illumination.size(); ++i) {
+      if (!std::isnan(builder_.illumination[i].x)) continue;
+      builder_.illumination[i] = {};
+      builder_.defects.add(DefectKind::illumination_missing,
+                           [&] { return fmt::format("{}: vertex {}", builder_.file, i); });
+    }
   }
 
   // Returns the index of a material that is the same in all that is read. Those of different names
@@ -273,45 +272,63 @@ class VrmlParser : VrmlScanner {
     return next;
   }
 
-  void face_set(Shape& shape) {
+  void face_set(VrmlShape& shape) {
     fields([&](std::string_view name) {
       if (name == "coordIndex") return shape.corners = indices(), true;
       if (name == "texCoordIndex") return shape.uv_corners = indices(), true;
+      if (name == "colorIndex") return shape.colour_corners = indices(), true;
+      if (name == "colorPerVertex") return shape.colour_per_vertex = next() != "FALSE", true;
       if (name == "ccw") return shape.clockwise = next() == "FALSE", true;
       if (name == "solid") return shape.solid = next() == "TRUE", true;
-      if (name != "coord" && name != "texCoord") return false;
-      const bool uv = name == "texCoord";
-      read_node(next(), [&](std::string_view, std::string_view) { points(uv, shape); });
-      return true;
+      if (name == "coord") {
+        return rows("point", 3, [&](const double* v) {
+          shape.points.push_back({v[0], v[1], v[2]});
+        });
+      }
+      if (name == "texCoord") {
+        return rows("point", 2, [&](const double* v) {
+          shape.uvs.push_back({float(v[0]), float(v[1])});
+        });
+      }
+      if (name == "color") {
+        return rows("color", 3, [&](const double* v) {
+          shape.colours.push_back({float(v[0]), float(v[1]), float(v[2])});
+        });
+      }
+      return false;
     });
   }
 
-  void points(bool uv, Shape& shape) {
-    fields([&](std::string_view field) {
-      if (field != "point") return false;
-      const auto values = list(uv ? 2 : 3);
-      for (std::size_t i = 0; !uv && i < values.size(); i += 3) {
-        shape.points.push_back({values[i], values[i + 1], values[i + 2]});
-      }
-      for (std::size_t i = 0; uv && i < values.size(); i += 2) {
-        shape.uvs.push_back({float(values[i]), float(values[i + 1])});
-      }
-      return true;
+  // Reads a node, and calls add(numbers) for each row of the list in one of its fields.
+  template <class Add>
+  bool rows(std::string_view wanted, std::size_t width, const Add& add) {
+    read_node(next(), [&](std::string_view, std::string_view) {
+      fields([&](std::string_view field) {
+        if (field != wanted) return false;
+        const auto values = list(width);
+        for (std::size_t i = 0; i < values.size(); i += width) add(&values[i]);
+        return true;
+      });
     });
+    return true;
   }
 
   void finish() {
     for (Vec3d& p : builder_.positions) p = from_glm(origin_ + to_glm(p));
     if (auto& view = builder_.view) view->position = from_glm(origin_ + to_glm(view->position));
+    finish_colours();
     builder_.check_positions(
         [&](std::size_t i) { return fmt::format("{}: vertex {}", builder_.file, i); });
     for (std::size_t i = 0; i < shapes_.size(); ++i) {
+      if (context_.cancelled()) return;  // so says SceneBuilder::finish()
+      const double done = double(i) / double(shapes_.size());
+      context_.report("reading", kScanned + (1 - kScanned) * done);
       add_faces(shapes_[i], i);
       shapes_[i] = {};
     }
   }
 
-  void add_faces(const Shape& shape, std::size_t number) {
+  void add_faces(const VrmlShape& shape, std::size_t number) {
     builder_.material = shape.material;
     builder_.object = static_cast<std::uint32_t>(number);
     builder_.objects.push_back(fmt::format("shape{}", number));
@@ -359,10 +376,12 @@ class VrmlParser : VrmlScanner {
     }
   };
 
+  static constexpr Vec3f kNoColour{std::numeric_limits<float>::quiet_NaN(), 0, 0};
+
   SceneBuilder& builder_;
   const Context& context_;
   glm::dvec3 origin_{0};
-  std::vector<Shape> shapes_;
+  std::vector<VrmlShape> shapes_;
   std::vector<Base> bases_;
   std::map<decltype(key_of({})), std::uint32_t> material_ids_;
 };

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <charconv>
 #include <utility>
 
 #include "libatlas/scene/files/text_scanner.h"
@@ -81,9 +82,28 @@ bool VrmlScanner::number(double& value) {
   return true;
 }
 
+bool VrmlScanner::integer(double& value) {
+  skip_blanks();
+  const bool sign = at_ < end_ && (*at_ == '-' || *at_ == '+');
+  const char* digits = at_ + sign + 2;
+  if (end_ - at_ < 3 + sign || digits[-2] != '0' || (digits[-1] | 32) != 'x') return number(value);
+  std::uint32_t bits = 0;
+  const auto [stop, error] = std::from_chars(digits, end_, bits, 16);
+  if (stop == digits || error != std::errc() || (stop < end_ && !breaks(*stop))) return false;
+  value = *at_ == '-' ? -double(bits) : double(static_cast<std::int32_t>(bits));
+  at_ = stop;
+  return true;
+}
+
+double VrmlScanner::integer() {
+  double value = 0;
+  if (!integer(value)) fail("an integer expected");
+  return value;
+}
+
 std::vector<double> VrmlScanner::list(std::size_t width) {
   std::vector<double> values;
-  numbers([&](double value) { values.push_back(value); });
+  numbers(&VrmlScanner::number, [&](double value) { values.push_back(value); });
   if (values.size() % width != 0) fail(fmt::format("a list of rows of {} with an odd end", width));
   return values;
 }
@@ -91,7 +111,7 @@ std::vector<double> VrmlScanner::list(std::size_t width) {
 std::vector<std::int32_t> VrmlScanner::indices() {
   constexpr std::int32_t kMost = std::numeric_limits<std::int32_t>::max();
   std::vector<std::int32_t> values;
-  numbers([&](double value) {
+  numbers(&VrmlScanner::integer, [&](double value) {
     const bool usable = value == -1 || (value >= 0 && value <= kMost);
     values.push_back(usable ? static_cast<std::int32_t>(value) : kNoIndex);
   });
@@ -101,7 +121,13 @@ std::vector<std::int32_t> VrmlScanner::indices() {
 void VrmlScanner::end_numbers() {
   if (peek() != "]") fail(fmt::format("'{}' is not a number", start_of(peek())));
   expect("]");
+  tell();
+}
+
+void VrmlScanner::tell() const {
   if (context_.cancelled()) throw MalformedVrml();
+  const double done = double(at_ - begin_) / double(end_ - begin_);
+  if (uses_ == 0) context_.report("reading", kScanned * done);
 }
 
 glm::dvec4 VrmlScanner::row(int width) {

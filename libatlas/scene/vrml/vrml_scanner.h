@@ -45,8 +45,11 @@ class VrmlScanner {
   std::vector<double> list(std::size_t width);
   // Reads `[ indices ]`. What is no index of a list becomes kNoIndex.
   std::vector<std::int32_t> indices();
+  static constexpr double kScanned = 0.8;  // share of the time until faces are added
   static constexpr std::int32_t kNoIndex = std::numeric_limits<std::int32_t>::min();
   glm::dvec4 row(int width);
+  // Reads an integer, which may be hexadecimal.
+  double integer();
 
   // Calls field(name) for each field up to the closing bracket. If it returns false, the field's
   // value is skipped.
@@ -108,15 +111,23 @@ class VrmlScanner {
   void check_field(std::string_view token);
   void skip_value();
   bool number(double& value);
-  // Reads `[ numbers ]`, and calls add(number) for each.
+  // Reads the same, or a hexadecimal integer.
+  bool integer(double& value);
+  // Reads `[ numbers ]` by `read`, one of the two above, and calls add(number) for each.
   template <class Add>
-  void numbers(const Add& add) {
+  void numbers(bool (VrmlScanner::*read)(double&), const Add& add) {
     expect("[");
     double value;
-    while (number(value)) add(value);
+    for (std::size_t count = 1; (this->*read)(value); ++count) {
+      add(value);
+      if (count % 65536 == 0) tell();
+    }
     end_numbers();
   }
   void end_numbers();
+  // Reports how much of the text is read, unless a USE leads back in it. Throws if the work is
+  // cancelled.
+  void tell() const;
   // Returns the type of the node that begins with `token`, and the name that DEF gives it.
   std::string_view type_of(std::string_view token, std::string_view& name);
   struct Definition {

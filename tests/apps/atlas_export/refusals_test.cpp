@@ -195,6 +195,28 @@ TEST_F(AtlasExport, AKeptSceneOverwritesNoneOfItsTextures) {
   EXPECT_EQ(slurp(dir_ / "w_texture0.png"), image);
 }
 
+// Textures are not read where no page needs them.
+TEST_F(AtlasExport, OverwritesNoTextureThatItNeedNotRead) {
+  const fs::path wood = write("wood.png", "an image"), bump = write("bump.png", "another");
+  write("t.mtl", "newmtl t\nmap_Kd wood.png\nmap_bump -bm 0.5 bump.png\nnewmtl other\n");
+  write("t.obj", "mtllib t.mtl\nusemtl t\n" + lit_box(2));
+  write("other.obj", "mtllib t.mtl\nusemtl other\n" + lit_box(2));
+  const auto before = files();
+  for (const char* arguments :
+       {"t.obj --charts-only --report", "t.obj --charts-only --depfile", "t.obj --plan --report",
+        "other.obj --report", "t.obj --charts-only --keep-scene --report"}) {
+    for (const fs::path& image : {wood, bump}) {
+      const RunResult r =
+          run(fmt::format("{0}/{1} {2} -o {0}/w.obj", dir_.string(), arguments, image.string()));
+      EXPECT_EQ(r.exit_code, 2) << arguments << image << r.output;
+      EXPECT_NE(r.output.find("would overwrite"), std::string::npos) << r.output;
+      EXPECT_EQ(files(), before) << arguments;
+    }
+  }
+  EXPECT_EQ(slurp(wood), "an image");
+  EXPECT_EQ(slurp(bump), "another");
+}
+
 // The materials of an OBJ and the buffer of a glTF are known only when the scene has been read.
 TEST_F(AtlasExport, OverwritesNoMaterialsAndNoBuffer) {
   const fs::path materials = write("m.mtl", "newmtl red\nKd 1 0 0\n");

@@ -64,6 +64,21 @@ TEST_F(AtlasPack, MeshListsWhatItWasMadeFrom) {
                std::filesystem::exists(dir_ / "a;b.obj"));
 }
 
+TEST_F(AtlasPack, MeshOverwritesNoTextureThatItNeedNotRead) {
+  write("a.mtl", "newmtl red\nmap_Kd wood.png\nmap_Ks shine.png\n");
+  write("m.obj", std::string("mtllib a.mtl\nusemtl red\n") + kTriangle);
+  for (const char* image : {"wood.png", "shine.png"}) {
+    write(image, "an image");
+    for (const char* option : {"--preview", "--depfile"}) {
+      const RunResult r = run(fmt::format("mesh m.obj -o out.obj --page 64 {} {}", option, image));
+      EXPECT_EQ(r.exit_code, 2) << r.output;
+      EXPECT_TRUE(holds(r.output, "would overwrite")) << r.output;
+      EXPECT_EQ(read(image), "an image") << option;
+    }
+  }
+  EXPECT_EQ(run("mesh m.obj -o out.obj --page 64 --preview out.png").exit_code, 0);
+}
+
 // Returns the uvs of an OBJ in its order.
 std::vector<Vec2d> uvs_of(const std::string& obj) {
   std::vector<Vec2d> uvs;
