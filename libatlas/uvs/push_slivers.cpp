@@ -26,9 +26,9 @@ constexpr std::size_t kMostAtPlainUv = 64;  // a uv with more triangles is a hub
 constexpr double kLeeway = 1e-3;
 
 // How often the triangles at a hub are looked at because of its moves, on average. Those of a fan
-// in shape take a tenth of this. Where all of a fan is far smaller than the steps between
+// in shape take a twentieth of this. Where all of a fan is far smaller than the steps between
 // floats, each of its triangles closes at every push of another one.
-constexpr std::size_t kMostLooks = 1000;
+constexpr std::size_t kMostLooks = 2000;
 
 // All triangles at a hub move with it, but hardly. Looking at each of them after each push would
 // take time that grows with the square of their number. Each open triangle tells instead how far

@@ -79,6 +79,7 @@ Result<ViewScene> load_view(const fs::path& path, const ViewSceneOptions& option
     return Status{view.status().code(), path.string() + ": " + view.status().message()};
   view->start = loaded->view;
   view->files = std::move(loaded->files);
+  view->files.insert(view->files.end(), loaded->unread_files.begin(), loaded->unread_files.end());
   return view;
 }
 

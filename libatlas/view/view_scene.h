@@ -66,7 +66,8 @@ struct ViewScene {
   Box3 middle = {};   // of these without the 5 % that lie outermost at each end of each axis
   Vec3d origin = {};  // added to a position, gives the coordinates of the file
   std::optional<FileView> start = {};  // where the file says that a viewer begins
-  // LoadedScene::files, which pictures must not replace. Like `start`, load_view() fills it in.
+  // LoadedScene::files and unread_files, which pictures must not replace. Like `start`, load_view()
+  // fills it in.
   std::vector<std::filesystem::path> files = {};
   double metres_per_unit = 1;  // > 0; used for the height of a visitor's eye
   double light_scale = 1;      // exposure that puts the 99th percentile of the light at 1

@@ -102,14 +102,16 @@ TEST_F(AtlasPlay, OutputsReplaceNeitherTheSceneNorAFile) {
 
 TEST_F(AtlasPlay, OutputsReplaceNoTextureOfTheScene) {
   fs::create_directories(dir_ / "film");
-  for (const char* name : {"t.png", "film/frame00001.png"})
+  for (const char* name : {"t.png", "film/frame00001.png", "bumps.png"})
     ASSERT_TRUE(write_png(dir_ / name, Image8(4, 4, 3, 128), {}).ok());
-  std::ofstream(dir_ / "t.mtl") << "newmtl a\nmap_Kd t.png\nnewmtl b\nmap_Kd film/frame00001.png\n";
+  std::ofstream(dir_ / "t.mtl") << "newmtl a\nmap_Kd t.png\nbump bumps.png\n"
+                                   "newmtl b\nmap_Kd film/frame00001.png\n";
   std::ofstream(dir_ / "t.obj") << "mtllib t.mtl\nv -2 0 2\nv 2 0 2\nv 0 0 -2\nvt 0 0\nvt 1 0\n"
                                    "usemtl a\nf 1/1 2/2 3/1\nusemtl b\nf 3/1 2/2 1/1\n";
   const std::string texture = text_of(dir_ / "t.png");
   for (const auto& [option, words] :
        {std::pair("--screenshot t.png", "t.png: would overwrite"),
+        {"--screenshot bumps.png", "bumps.png: would overwrite"},
         {"--record film", "film: holds frame00001.png, which is read"}}) {
     const RunResult r = run(std::string("t.obj --frames 2") + kSmall + option);
     EXPECT_EQ(r.exit_code, 2) << option;
