@@ -226,11 +226,17 @@ class Merger {
     }
     const TrialOutcome outcome = attempt(a, b);
     return outcome.accepted ||
-           (outcome.euler < 1 && keep_longest_run(mesh_, seam_ends(a, b), glue_) &&
-            attempt(a, b).accepted);
+           ((outcome.euler < 1 || glue_has_tip()) &&
+            keep_longest_run(mesh_, seam_ends(a, b), glue_) && attempt(a, b).accepted);
   }
 
   bool is_tip(std::uint32_t slot) const { return !mesh_.slot_tip.empty() && mesh_.slot_tip[slot]; }
+  bool glue_has_tip() const {
+    return std::any_of(glue_.begin(), glue_.end(), [&](std::uint32_t arc) {
+      return is_tip(mesh_.arcs[arc].slot[0]) || is_tip(mesh_.arcs[arc].slot[1]);
+    });
+  }
+
   TrialOutcome attempt(std::uint32_t a, std::uint32_t b) {
     ++trials;
     const TrialLimits limits = limits_for(a, b);
