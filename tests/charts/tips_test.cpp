@@ -97,5 +97,22 @@ TEST(Tips, ClosedConesTakeFewCharts) {
   }
 }
 
+// Halves of a box meet along all of their border, which has tips on it. They are joined along its
+// longest run between these, as the net of a box is.
+TEST(Tips, BoxesUnrollIntoNets) {
+  for (const int n : {12, 30}) {
+    for (const auto& [size, most] : {std::pair(Vec3d{1, 1, 1}, 2u),
+                                     {Vec3d{6, 4, 3}, 2u},
+                                     {Vec3d{5, 4, 1}, 1u},
+                                     {Vec3d{3, 2, 0.5}, 1u}}) {
+      const Mesh mesh(box(n, size));
+      const Result<ChartSet> set = make_charts(mesh.view(), {}, {});
+      ASSERT_TRUE(set.ok());
+      EXPECT_EQ(check_charts(mesh.view(), *set).fault, "");
+      EXPECT_LE(set->charts.size(), most) << n << ": " << size.x << " x " << size.y;
+    }
+  }
+}
+
 }  // namespace
 }  // namespace atlas::test
