@@ -60,13 +60,6 @@ TEST(Faces, AreNoFacetsOfSomethingRound) {
   EXPECT_EQ(count(part_of(cylinder(6, 20)).faces), 6u);  // the sides of a hexagonal prism
 }
 
-TEST(Faces, AreNotFoundWhereTheyWouldBeMoreThanCells) {
-  const Part part = part_of(box(2));
-  CellPlan plan = part.plan;
-  plan.cells[0] = 1;  // one cell, and six sides are more than three per cell
-  EXPECT_EQ(count(find_faces(part.topology, plan)), 0u);
-}
-
 TEST(Faces, BoundCells) {
   for (const Shape& shape : {box(12, {3, 2, 0.5}), plate_with_holes(5, 12), cylinder(60, 10),
                              together(box(9), geodesic_sphere(12))}) {

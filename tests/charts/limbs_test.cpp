@@ -190,6 +190,23 @@ TEST(Limbs, ManySprawlingChartsAreCutAsFarAsTheyLeaveAPageEmpty) {
   }
 }
 
+// Twenty concentric rings, each of which is small beside all of them.
+TEST(Limbs, RingsThatNestInEachOtherAreCutLittle) {
+  Mesh mesh;
+  const Shape band = grid(96, 2, 1, 1);
+  for (int i = 0; i < 20; ++i) {
+    for (const std::uint32_t v : band.indices)
+      mesh.indices.push_back(v + std::uint32_t(mesh.positions.size()));
+    for (const Vec3f& p : band.positions) {
+      const double angle = 2 * M_PI * p.x, radius = 0.2 + 0.04 * i + 0.012 * (1 - p.y);
+      mesh.positions.push_back(
+          {float(radius * std::cos(angle)), float(radius * std::sin(angle)), 0.01f * float(i)});
+    }
+  }
+  EXPECT_EQ(charts_of(mesh, 0).charts.size(), 20u);
+  EXPECT_LT(charts_of(mesh, 0.72).charts.size(), 300u);
+}
+
 TEST(Limbs, EdgesOfACoarseMeshMayBeChords) {
   // An L whose inner corner (point 4) is connected to no other point than its outer corner.
   const std::vector<Vec2d> outline{{0, 0}, {0.7, 0}, {5, 0}, {5, 1}, {1, 1}, {1, 5}, {0, 5}};

@@ -4,6 +4,7 @@
 
 #include "libatlas/charts/cells/cells.h"
 #include "libatlas/charts/geometry/tangents.h"
+#include "libatlas/charts/mesh/piece_list.h"
 #include "libatlas/core/degrees.h"
 #include "libatlas/core/glm_bridge.h"
 #include "libatlas/core/hull.h"
@@ -20,26 +21,6 @@ constexpr double kHullCone = radians(80);
 
 struct ProjectedNormal : Vec2d {
   Vec3f normal;
-};
-
-struct CellLists {
-  std::vector<std::uint32_t> first, triangles;
-
-  explicit CellLists(const Cells& cells) : first(cells.count + 2, 0) {
-    const auto& of = cells.of_triangle;
-    for (const std::uint32_t k : of) {
-      if (k != kNoIndex) ++first[k + 2];
-    }
-    for (std::size_t i = 2; i < first.size(); ++i) first[i] += first[i - 1];
-    triangles.resize(first.back());
-    for (std::uint32_t t = 0; t < of.size(); ++t) {
-      if (of[t] != kNoIndex) triangles[first[of[t] + 1]++] = t;
-    }
-    first.pop_back();
-  }
-  std::span<const std::uint32_t> of(std::uint32_t k) const {
-    return {triangles.data() + first[k], first[k + 1] - first[k]};
-  }
 };
 
 class ConeSplitter {
@@ -98,9 +79,9 @@ class ConeSplitter {
 }  // namespace
 
 void split_by_cone(const Topology& topology, double cone, Cells& cells) {
-  const CellLists lists(cells);
+  const TriangleLists lists(cells.of_triangle, cells.count);
   ConeSplitter splitter(topology, cone, cells);
-  for (std::uint32_t k = 0; k + 1 < lists.first.size(); ++k) {
+  for (std::uint32_t k = 0; k < lists.count(); ++k) {
     if (lists.of(k).empty()) continue;
     if (normal_cone(topology.normals, lists.of(k)).angle > cone - kMargin) {
       splitter.divide(k, lists.of(k));
@@ -109,7 +90,7 @@ void split_by_cone(const Topology& topology, double cone, Cells& cells) {
 }
 
 ExtremeNormals extreme_normals(const Topology& topology, const Cells& cells) {
-  const CellLists lists(cells);
+  const TriangleLists lists(cells.of_triangle, cells.count);
   ExtremeNormals result;
   std::vector<ProjectedNormal> points, hull;
   for (std::uint32_t k = 0; k < cells.count; ++k) {

@@ -13,14 +13,11 @@ constexpr float kFlatCosine = 1 - 1e-5f;
 // A face has at least this share of the mean area of a cell in its piece. The value is not round,
 // so that facets of equal size do not lie at the limit.
 constexpr double kLeastArea = 0.2563;
-// Faces are ignored in a piece that they would divide into more regions than this for each planned
-// cell, since every region would become a cell.
-constexpr std::size_t kMostRegions = 3;
 // A plane is a facet of something round, and no face, if it bends by less than 35 degrees to its
 // neighbours along more than kMostSoft of its border. Only neighbours with more than kFacet of its
 // area count.
 constexpr double kSoftCosine = 0.82, kMostSoft = 0.5, kFacet = 0.25;
-constexpr std::uint32_t kAlone = kNoIndex - 1, kRest = kNoIndex - 2;  // not names of planes
+constexpr std::uint32_t kAlone = kNoIndex - 1;  // not the name of a plane
 
 class FaceFinder {
  public:
@@ -60,18 +57,12 @@ class FaceFinder {
         flood_plane(t);
       }
     }
-    std::size_t regions = 0;
     for (const Plane& plane : planes_) {
       if (plane.area < kLeastArea * area / cells || !is_face(plane)) continue;
       for (const std::uint32_t t : of(plane)) faces_.of_triangle[t] = plane_[t];
       covered += plane.area;
-      ++regions;
     }
-    if (regions == 0) return 0;
-    for (const std::uint32_t t : piece) regions += flood_rest(t);
-    if (regions <= kMostRegions * cells) return covered / area;
-    for (const std::uint32_t t : piece) faces_.of_triangle[t] = kNoIndex;
-    return 0;
+    return covered > 0 ? covered / area : 0;
   }
 
   std::span<const std::uint32_t> of(const Plane& plane) const {
@@ -134,30 +125,13 @@ class FaceFinder {
     return soft <= kMostSoft * border;
   }
 
-  // Marks the region between faces that contains the seed. Returns whether that region is new.
-  bool flood_rest(std::uint32_t seed) {
-    const auto enter = [&](std::uint32_t t) {
-      if (faces_.of_triangle[t] != kNoIndex) return false;
-      return std::exchange(plane_[t], kRest) != kRest;
-    };
-    if (!enter(seed)) return false;
-    queue_.assign(1, seed);
-    for (std::size_t i = 0; i < queue_.size(); ++i) {
-      for (std::uint32_t h = 3 * queue_[i]; h < 3 * queue_[i] + 3; ++h) {
-        const std::uint32_t o = topology_.opposite[h];
-        if (o != kNoIndex && enter(o / 3)) queue_.push_back(o / 3);
-      }
-    }
-    return true;
-  }
-
   const Topology& topology_;
   const CellPlan& plan_;
   std::span<const std::uint8_t> left_out_;
   Regions faces_;
   std::vector<std::uint32_t> plane_;  // one per triangle
   std::vector<Plane> planes_;         // of the piece
-  std::vector<std::uint32_t> triangles_, queue_;
+  std::vector<std::uint32_t> triangles_;
 };
 
 }  // namespace

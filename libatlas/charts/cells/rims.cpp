@@ -1,5 +1,7 @@
 #include "libatlas/charts/cells/rims.h"
 
+#include "libatlas/core/counting_sort.h"
+
 namespace atlas {
 namespace {
 
@@ -116,21 +118,14 @@ Rims::Rims(const Topology& topology, const Cells& cells) : topology_(topology), 
 
 void Rims::sort_by_cell() {
   const auto n = static_cast<std::uint32_t>(topology_.opposite.size());
-  first_.assign(cells_.count + 2, 0);
   std::vector<std::uint32_t> found;
-  for (std::uint32_t t = 0; t < n / 3; ++t) {
-    const std::uint32_t own = cells_.of_triangle[t];
-    if (own == kNoIndex) continue;
-    for (std::uint32_t h = 3 * t; h < 3 * t + 3; ++h) {
-      if (across(h) == own) continue;
-      found.push_back(h);
-      ++first_[own + 2];
-    }
+  for (std::uint32_t h = 0; h < n; ++h) {
+    if (on_rim(h)) found.push_back(h);
   }
-  for (std::size_t i = 2; i < first_.size(); ++i) first_[i] += first_[i - 1];
   rim_.resize(found.size());
-  for (const std::uint32_t h : found) rim_[first_[cell(h) + 1]++] = h;
-  first_.pop_back();
+  first_ = counting_sort(
+      found.size(), cells_.count, [&](std::size_t i) { return cell(found[i]); },
+      [&](std::size_t i, std::uint32_t at) { rim_[at] = found[i]; });
 }
 
 void Rims::walk(std::uint32_t start) {

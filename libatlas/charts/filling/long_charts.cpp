@@ -114,7 +114,8 @@ std::vector<FlatChart> charts_of(const FlattenInput& input, const FlatChart& cha
 
 // Makes the lengths charts. A length that exceeds the bound stays with the next one: what stretched
 // a thousandth of the whole chart too much may be more of a length. Returns nothing if there is no
-// next one, or if there are more than kMostParts charts per length.
+// next one, if there are more than kMostParts charts per length, or if one is hardly shorter than
+// the whole chart.
 std::vector<FlatChart> cut(const FlattenInput& input, const FlatChart& chart, Lengths lengths) {
   std::vector<FlatChart> pieces;
   for (std::size_t k = 0; k < lengths.size(); ++k) {
@@ -127,28 +128,10 @@ std::vector<FlatChart> cut(const FlattenInput& input, const FlatChart& chart, Le
     std::sort(next.begin(), next.end());
   }
   if (pieces.size() < 2 || pieces.size() > kMostParts * lengths.size()) return {};
-  return pieces;
-}
-
-bool all_shorter(const std::vector<FlatChart>& pieces, const FlatChart& chart) {
-  return std::all_of(pieces.begin(), pieces.end(), [&](const FlatChart& piece) {
+  const bool all_shorter = std::all_of(pieces.begin(), pieces.end(), [&](const FlatChart& piece) {
     return longer(piece) <= kShorter * longer(chart);
   });
-}
-
-// Tries the lengths from either end, and then one length more, which may keep to the bound where
-// these do not.
-std::vector<FlatChart> cut(const FlattenInput& input, const FlatChart& chart, std::size_t count,
-                           const Context& context) {
-  for (const std::size_t tried : {count, count + 1}) {
-    Lengths lengths = lengths_of(chart, tried, context);
-    for (int way = 0; way < 2; ++way) {
-      std::vector<FlatChart> pieces = cut(input, chart, lengths);
-      if (!pieces.empty() && all_shorter(pieces, chart)) return pieces;
-      std::reverse(lengths.begin(), lengths.end());
-    }
-  }
-  return {};
+  return all_shorter ? pieces : std::vector<FlatChart>{};
 }
 
 }  // namespace
@@ -167,7 +150,7 @@ std::size_t cut_long_charts(const FlattenInput& input, std::vector<FlatChart>& c
     const std::size_t wanted =
         std::max(pieces_for_page(charts, place, area), pieces_for_gutters(charts, place, area));
     if (wanted < 2 || slim < kStrip * double(wanted) / 2) return count;
-    std::vector<FlatChart> pieces = cut(input, *longest, wanted, context);
+    std::vector<FlatChart> pieces = cut(input, *longest, lengths_of(*longest, wanted, context));
     if (pieces.empty()) return count;
     const auto at = charts.erase(longest);
     charts.insert(at, std::move_iterator(pieces.begin()), std::move_iterator(pieces.end()));

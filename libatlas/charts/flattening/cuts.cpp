@@ -310,31 +310,23 @@ bool Darts::cut_to_border(const Topology& topology, const LocalChart& chart,
   return any;
 }
 
-std::vector<std::vector<std::uint32_t>> ways_to_tips(const Topology& topology,
-                                                     const LocalChart& chart,
-                                                     std::span<const std::uint32_t> triangles) {
+std::vector<std::uint32_t> way_to_tip(const Topology& topology, const LocalChart& chart,
+                                      std::span<const std::uint32_t> triangles) {
   EdgePaths paths(topology, chart);
   paths.spread_from_border();
-  std::uint32_t sharpest = kNoIndex, innermost = kNoIndex;
-  double defect = 0, distance = 0;
-  const auto take = [](double value, std::uint32_t v, double& most, std::uint32_t& at) {
-    if (value > most || (value == most && v < at)) most = value, at = v;
-  };
+  std::uint32_t sharpest = kNoIndex;
+  double most = 0;
   for (const std::uint32_t t : triangles) {
     for (const std::uint32_t v : chart.corners[t]) {
       if (paths.on_border(v)) continue;
-      const double own = kSameDefect * std::round(paths.defect(v) / kSameDefect);
-      if (own <= 0) continue;
-      take(own, v, defect, sharpest);
-      take(paths.distance(v), v, distance, innermost);
+      const double defect = kSameDefect * std::round(paths.defect(v) / kSameDefect);
+      if (defect > most || (defect == most && defect > 0 && v < sharpest)) {
+        most = defect;
+        sharpest = v;
+      }
     }
   }
-  std::vector<std::vector<std::uint32_t>> ways;
-  if (sharpest != kNoIndex) ways.push_back(paths.way_out(sharpest));
-  if (innermost == kNoIndex || innermost == sharpest) return ways;
-  paths.spread_from_border();
-  ways.push_back(paths.way_out(innermost));
-  return ways;
+  return sharpest == kNoIndex ? std::vector<std::uint32_t>{} : paths.way_out(sharpest);
 }
 
 }  // namespace atlas

@@ -1,35 +1,40 @@
-// Internal: the triangles of each piece of a mesh.
+// Internal: the triangles of each piece or cell of a mesh.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "libatlas/charts/mesh/topology.h"
+#include "libatlas/core/counting_sort.h"
 
 namespace atlas {
 
-// The triangles of each piece, in order of id.
-struct PieceList {
+// The triangles with each of the labels 0 .. count - 1, in order of id. Others have no label.
+struct TriangleLists {
   std::vector<std::uint32_t> first, triangles;
 
-  explicit PieceList(const Topology& topology) : first(topology.component_count + 2, 0) {
-    const auto n = static_cast<std::uint32_t>(topology.triangle_count());
-    for (std::uint32_t t = 0; t < n; ++t) {
-      if (topology.component[t] != kNoIndex) ++first[topology.component[t] + 2];
-    }
-    for (std::size_t i = 2; i < first.size(); ++i) first[i] += first[i - 1];
-    triangles.resize(first.back());
-    for (std::uint32_t t = 0; t < n; ++t) {
-      if (topology.component[t] != kNoIndex) triangles[first[topology.component[t] + 1]++] = t;
-    }
+  TriangleLists(std::span<const std::uint32_t> label, std::size_t count) {
+    Buckets sorted = sort_into_buckets(label.size(), count + 1, [&](std::size_t t) {
+      return std::min<std::size_t>(label[t], count);
+    });
+    first = std::move(sorted.begin);
+    triangles = std::move(sorted.items);
     first.pop_back();
+    triangles.resize(first.back());
   }
 
   std::uint32_t count() const { return static_cast<std::uint32_t>(first.size() - 1); }
-  std::span<const std::uint32_t> of(std::uint32_t piece) const {
-    return {triangles.data() + first[piece], first[piece + 1] - first[piece]};
+  std::span<const std::uint32_t> of(std::uint32_t label) const {
+    return {triangles.data() + first[label], first[label + 1] - first[label]};
   }
+};
+
+struct PieceList : TriangleLists {
+  explicit PieceList(const Topology& topology)
+      : TriangleLists(topology.component, topology.component_count) {}
 };
 
 }  // namespace atlas

@@ -37,7 +37,6 @@ class PairStraightener {
         band_(scratch.band),
         list_(scratch.list),
         fans_(scratch.fans),
-        visited_(scratch.visited),
         cut_(scratch.cut) {}
 
   // Where a cut in the whole band would change too much, a cut in a narrower band may not.
@@ -173,7 +172,7 @@ class PairStraightener {
     bool moved = false;
     for (std::uint32_t i = first_; i < last_; ++i) moved |= changes(band_[i]);
     if (!moved) return true;
-    if (!same_euler() || !held()) return false;
+    if (!same_euler()) return false;
     apply();
     return true;
   }
@@ -286,36 +285,6 @@ class PairStraightener {
     return closed && triangles > 0 && links == triangles ? 1 : triangles - links;
   }
 
-  // Whether all parts of both charts within the band would still touch their chart outside of it.
-  // Parts need not be connected within the band: with equal Euler characteristics, a chart could
-  // come apart only if it also got a hole. (If that happens, flattening makes its components
-  // charts.)
-  bool held() {
-    visited_.assign(last_ - first_, 0);
-    for (std::uint32_t i = 0; i < visited_.size(); ++i) {
-      if (visited_[i]) continue;
-      visited_[i] = 1;
-      bool hold = false;
-      list_.assign(1, band_[first_ + i]);
-      for (std::size_t k = 0; k < list_.size(); ++k) {
-        const std::uint32_t t = list_[k];
-        for (std::uint32_t h = 3 * t; h < 3 * t + 3; ++h) {
-          const std::uint32_t o = topology_.opposite[h];
-          if (o == kNoIndex) continue;
-          if (side_at(o / 3, true) != side_at(t, true)) continue;
-          if (!in_band(o / 3)) {
-            hold = true;
-          } else if (std::uint8_t& seen = visited_[places_[o / 3] - first_]; !seen) {
-            seen = 1;
-            list_.push_back(o / 3);
-          }
-        }
-      }
-      if (!hold) return false;
-    }
-    return true;
-  }
-
   // Moves triangles to the other chart, each across an edge to a triangle that was there before or
   // has moved already. These triangles have no seam bits.
   void apply() {
@@ -335,7 +304,7 @@ class PairStraightener {
           moved_.push_back(h);
         }
       }
-      if (kept == left) break;  // impossible: held() has found a way to each
+      if (kept == left) break;  // what is left leads nowhere, and stays
       left = kept;
     }
   }
@@ -361,7 +330,6 @@ class PairStraightener {
   std::array<std::uint32_t, 2> charts_;
   std::span<const std::uint32_t> border_;
   std::vector<std::uint32_t>&band_, &list_, &fans_;
-  std::vector<std::uint8_t>& visited_;
   MinCut& cut_;
   std::vector<std::uint32_t> moved_;
   std::uint32_t first_ = 0, last_ = 0;  // range of the current component in band_

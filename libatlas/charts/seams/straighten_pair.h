@@ -30,7 +30,6 @@ struct BorderPair {
 
 struct PairScratch {
   std::vector<std::uint32_t> band, list, fans;
-  std::vector<std::uint8_t> visited;  // one per triangle of the component
   MinCut cut;
 };
 
