@@ -153,12 +153,15 @@ class Segmenter {
     if (context_.cancelled()) return {};
     Stopwatch watch(own_cpu_seconds);
     const BorderRules rules{options_.crease_degrees, {axes_, std::cos(cone_ - 1e-5)}};
+    Slits slits(topology_, {rules, bands_}, result_.partition, result_.frames);
+    slits.close();
     smooth_borders(topology_, rules, result_.partition, result_.frames);
     const std::vector<std::uint32_t> moved =
         straighten_borders(topology_, {rules, bands_}, result_.partition, context_);
     carry_frames(topology_, moved, result_.frames);
     smooth_borders(topology_, rules, result_.partition, result_.frames);
-    straighten_slits(topology_, {rules, bands_}, result_.partition, result_.frames);
+    slits.reopen();
+    slits.straighten();
     result_.timing.borders_cpu = watch.lap();
     return std::move(result_);
   }

@@ -138,7 +138,8 @@ TEST(SlitPaths, ATubesSlitBecomesStraighter) {
     const double before = charts.slit_length();
     ASSERT_EQ(charts.topologies()[0], Disc(1, 1));
     ASSERT_GT(charts.least_agreement(), 0.999);
-    straighten_slits(charts.topology, {{40, {}}, kBands}, charts.partition, charts.frames);
+    Slits slits(charts.topology, {{40, {}}, kBands}, charts.partition, charts.frames);
+    slits.straighten();
     EXPECT_GT(before, 8.5);
     EXPECT_LT(charts.slit_length(), 0.975 * before);
     EXPECT_EQ(charts.topologies()[0], Disc(1, 1)) << seed;
@@ -156,7 +157,8 @@ TEST(SlitPaths, TipsStayWhereTheyAre) {
         0, [&](std::uint32_t v) { return v == a; }, [&](std::uint32_t v) { return v == b; }, seed);
     const double before = charts.slit_length();
     ASSERT_EQ(charts.slit_ends(), (std::set{a, b}));
-    straighten_slits(charts.topology, {{40, {}}, kBands}, charts.partition, charts.frames);
+    Slits slits(charts.topology, {{40, {}}, kBands}, charts.partition, charts.frames);
+    slits.straighten();
     EXPECT_LE(charts.slit_length(), before);
     sum_before += before;
     sum_after += charts.slit_length();
@@ -187,12 +189,90 @@ TEST(SlitPaths, DiscsStayDiscs) {
     }
     const auto were = charts.topologies();
     const double before = charts.slit_length();
-    straighten_slits(charts.topology, {{40, {}}, kBands}, charts.partition, charts.frames);
+    Slits slits(charts.topology, {{40, {}}, kBands}, charts.partition, charts.frames);
+    slits.straighten();
     EXPECT_EQ(charts.topologies(), were) << seed;
     EXPECT_LE(charts.slit_length(), before) << seed;
     shorter += charts.slit_length() < 0.95 * before;
   }
   EXPECT_GT(shorter, 15);
+}
+
+// Two tubes end to end, with a ragged border between them where their slits end.
+TEST(SlitPaths, BordersMoveAcrossClosedSlits) {
+  int shorter = 0;
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    Slitted charts = tube(48, 40, 6);
+    std::mt19937_64 random(seed);
+    std::vector<double> ridge(48);
+    for (double& r : ridge) r = 3 + double(random() % 7) / 10;
+    for (std::uint32_t t = 0; t < charts.topology.triangle_count(); ++t) {
+      const Vec3f& p = charts.topology.points[charts.topology.corner_vertex[3 * t]];
+      const auto column = std::size_t((std::atan2(p.y, p.x) + M_PI) / (2 * M_PI) * 47.999);
+      charts.partition.chart[t] =
+          charts.height(charts.topology.corner_vertex[3 * t]) > ridge[column];
+    }
+    const auto tubes = charts.topologies();
+    if (tubes.at(0) != Disc(1, 0) || tubes.at(1) != Disc(1, 0)) continue;
+    std::set<std::uint32_t> between;
+    for (std::uint32_t h = 0; h < charts.topology.opposite.size(); ++h) {
+      const std::uint32_t o = charts.topology.opposite[h];
+      if (o == kNoIndex || charts.partition.chart[h / 3] == charts.partition.chart[o / 3]) continue;
+      between.insert(charts.from(h));
+    }
+    const auto middle = [&](std::uint32_t v) { return between.count(v) > 0; };
+    charts.cut(
+        0, [&](std::uint32_t v) { return charts.height(v) < 1e-6; }, middle, seed);
+    charts.cut(
+        1, middle, [&](std::uint32_t v) { return charts.height(v) > 6 - 1e-6; }, seed);
+    const auto were = charts.topologies();
+    ASSERT_EQ(were.at(0), Disc(1, 1));
+    ASSERT_EQ(were.at(1), Disc(1, 1));
+    const double before = charts.border_length();
+    Slits slits(charts.topology, {{40, {}}, kBands}, charts.partition, charts.frames);
+    slits.close();
+    EXPECT_EQ(charts.slit_length(), 0);
+    charts.straighten(4);
+    slits.reopen();
+    slits.straighten();
+    EXPECT_EQ(charts.topologies(), were) << seed;
+    EXPECT_LT(charts.slit_length(), 7.5);  // the slits do not become long detours
+    shorter += charts.border_length() < 0.8 * before;
+  }
+  EXPECT_GT(shorter, 10);
+}
+
+// While the slits are closed, the lower of two tubes loses rings to the upper one. What is left of
+// its slit is cut again, and the upper one's is extended to the new border.
+TEST(SlitPaths, EndAtTheBorderWhereverItIs) {
+  for (std::uint64_t seed = 1; seed <= 10; ++seed) {
+    Slitted charts = tube(24, 24, 6);
+    const auto place_border = [&](double height) {
+      for (std::uint32_t t = 0; t < charts.topology.triangle_count(); ++t) {
+        double sum = 0;
+        for (int c = 0; c < 3; ++c) sum += charts.height(charts.topology.corner_vertex[3 * t + c]);
+        charts.partition.chart[t] = sum > 3 * height;
+      }
+    };
+    const auto at = [&](double height) {
+      return
+          [&charts, height](std::uint32_t v) { return std::abs(charts.height(v) - height) < 1e-3; };
+    };
+    place_border(3);
+    charts.cut(0, at(0), at(3), seed);
+    charts.cut(1, at(3), at(6), seed + 100);
+    ASSERT_EQ(charts.topologies().at(0), Disc(1, 1));
+    ASSERT_EQ(charts.topologies().at(1), Disc(1, 1));
+    Slits slits(charts.topology, {{40, {}}, kBands}, charts.partition, charts.frames);
+    slits.close();
+    ASSERT_EQ(charts.slit_length(), 0);
+    place_border(2.25);
+    slits.reopen();
+    EXPECT_EQ(charts.topologies().at(0), Disc(1, 1)) << seed;
+    EXPECT_EQ(charts.topologies().at(1), Disc(1, 1)) << seed;
+    EXPECT_EQ(charts.seam_faults(), 0u) << seed;
+    EXPECT_EQ(charts.slit_ends().size(), 4u) << seed;
+  }
 }
 
 }  // namespace

@@ -30,6 +30,15 @@ BandPaths::Path BandPaths::beside(const Path& path, const std::pair<Ends, Ends>&
   return found;
 }
 
+BandPaths::Path BandPaths::to_border(std::uint32_t h, int rings) {
+  add(h, 0);
+  choose_unit({h, next_half_edge(h), previous_half_edge(h)});
+  spread(rings);
+  Path found = find({h}, {}, 0);
+  clear();
+  return found;
+}
+
 void BandPaths::add(std::uint32_t h, int level) {
   if (level_.empty()) {
     const std::size_t vertices = topology_.points.size();
@@ -63,7 +72,7 @@ void BandPaths::spread(int rings) {
   }
 }
 
-// Dijkstra's algorithm.
+// Dijkstra's algorithm. Returns a path to the border if `goals` is empty.
 BandPaths::Path BandPaths::find(const Ends& starts, const Ends& goals, double stiffness) {
   using Visit = std::pair<double, std::uint32_t>;
   std::priority_queue<Visit, std::vector<Visit>, std::greater<>> heap;
@@ -86,7 +95,9 @@ BandPaths::Path BandPaths::find(const Ends& starts, const Ends& goals, double st
     heap.pop();
     if (so_far > distance_[v]) continue;
     if (among(last, v)) return trace(v);
-    if (!among(first, v) && fans_.place(out_[v]) != ChartFans::Place::inside) continue;
+    const ChartFans::Place place = fans_.place(out_[v]);
+    if (goals.empty() && place == ChartFans::Place::border) return trace(v);
+    if (!among(first, v) && place != ChartFans::Place::inside) continue;
     fans_.around(out_[v], linked, [&](std::uint32_t g) {
       const std::uint32_t w = fans_.to(g);
       if (!fans_.linked(g) || level_[w] < 0) return;

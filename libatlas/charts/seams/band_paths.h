@@ -29,6 +29,10 @@ class BandPaths {
   // there is none.
   Path beside(const Path& path, const std::pair<Ends, Ends>& ends, const Band& band);
 
+  // Returns the path from the start of h, inside the chart, to the nearest border, if that is
+  // within `rings` edges; else an empty path.
+  Path to_border(std::uint32_t h, int rings);
+
  private:
   void add(std::uint32_t h, int level);
   void choose_unit(const Path& edges);

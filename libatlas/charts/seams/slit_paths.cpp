@@ -15,7 +15,7 @@ namespace {
 
 using Path = BandPaths::Path;
 
-constexpr int kRounds = 4;
+constexpr int kRounds = 4, kTubeRounds = 16;
 constexpr double kLeastGain = 0.01;  // share of a path's cost
 // An edge costs this share of its length more for each edge that it is away from the old path,
 // because a chart stretches least where merging cut it open. Does not apply to tubes, which stretch
@@ -23,14 +23,17 @@ constexpr double kLeastGain = 0.01;  // share of a path's cost
 constexpr double kStiffness = 0.15;
 // In bands of fewer rings borders hardly move.
 constexpr int kWideBand = 3;
+constexpr int kReach = 4;  // times the rings: how far a slit may be extended
 // The most triangles between two paths, per edge of the paths and ring of the band. Larger regions
 // do not lie between them.
 constexpr std::size_t kLuneTriangles = 6, kSmallLune = 64;
 
-class SlitStraightener {
+}  // namespace
+
+class Slits::Straightener {
  public:
-  SlitStraightener(const Topology& topology, const StraightenOptions& options, Partition& partition,
-                   Frames& frames)
+  Straightener(const Topology& topology, const StraightenOptions& options, Partition& partition,
+               Frames& frames)
       : topology_(topology),
         bands_(options.bands),
         partition_(partition),
@@ -39,12 +42,34 @@ class SlitStraightener {
         fans_(topology, partition),
         paths_(topology, partition, crease_cosine_) {}
 
-  void run() {
+  void close() {
+    list_paths();
+    std::erase_if(slits_, [&](const Slit& slit) { return !is_tube(slit); });
+    for (const Slit& slit : slits_) seal(slit.path);
+  }
+
+  void reopen() {
+    for (Slit& slit : slits_) {
+      std::erase_if(slit.path, [&](std::uint32_t h) {
+        return partition_.chart[h / 3] != slit.chart || !fans_.inner(h);
+      });
+      cut(slit.path);
+    }
+    for (Slit& slit : slits_) {
+      if (slit.path.empty()) continue;
+      const int rings = kReach * bands_[slit.chart].rings;
+      if (slit.free_end) draw_on(next_half_edge(slit.path.back()), rings);
+      if (slit.free_start) draw_on(slit.path.front(), rings);
+    }
+  }
+
+  void straighten() {
     list_paths();
     for (Slit& slit : slits_) {
-      const BandPaths::Band band{bands_[slit.chart].rings, is_tube(slit) ? 0 : kStiffness};
-      if (band.rings == 0) continue;
-      for (int round = 0; round < kRounds && shorten(slit.path, band); ++round) {
+      const bool tube = is_tube(slit);
+      const BandPaths::Band band{bands_[slit.chart].rings, tube ? 0 : kStiffness};
+      const int rounds = band.rings == 0 ? 0 : tube ? kTubeRounds : kRounds;
+      for (int round = 0; round < rounds && shorten(slit.path, band); ++round) {
       }
     }
   }
@@ -63,6 +88,7 @@ class SlitStraightener {
 
   // Lists the maximal paths of seams. No path passes a vertex where others end.
   void list_paths() {
+    slits_.clear();
     std::vector<std::uint32_t> seams;
     for (std::uint32_t t = 0; t < topology_.triangle_count(); ++t) {
       if (partition_.seams[t] == 0 || partition_.chart[t] == kNoIndex) continue;
@@ -92,6 +118,16 @@ class SlitStraightener {
   bool on_border(std::uint32_t h) const {
     return !fans_.around(
         h, [&](std::uint32_t g) { return fans_.inner(g); }, [](std::uint32_t) {});
+  }
+
+  // Extends a slit that ends inside the chart, at the start of h, to the nearest border.
+  void draw_on(std::uint32_t h, int rings) {
+    int seams = 0;
+    const bool inside = fans_.around(
+        h, [&](std::uint32_t g) { return fans_.inner(g); },
+        [&](std::uint32_t g) { seams += partition_.seam(g); });
+    if (!inside || seams != 1) return;
+    cut(paths_.to_border(h, rings));
   }
 
   // Returns the path from seam h on, to where it ends or branches.
@@ -301,11 +337,19 @@ class SlitStraightener {
   std::vector<Slit> slits_;
 };
 
-}  // namespace
+Slits::Slits(const Topology& topology, const StraightenOptions& options, Partition& partition,
+             Frames& frames)
+    : straightener_(std::make_unique<Straightener>(topology, options, partition, frames)) {}
+Slits::~Slits() = default;
 
-void straighten_slits(const Topology& topology, const StraightenOptions& options,
-                      Partition& partition, Frames& frames) {
-  SlitStraightener(topology, options, partition, frames).run();
+void Slits::close() {
+  straightener_->close();
+}
+void Slits::reopen() {
+  straightener_->reopen();
+}
+void Slits::straighten() {
+  straightener_->straighten();
 }
 
 }  // namespace atlas
