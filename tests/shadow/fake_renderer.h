@@ -10,11 +10,16 @@
 #include <utility>
 
 #include "libatlas/core/vec.h"
+#include "libatlas/shadow/blend.h"
 #include "libatlas/shadow/schedule.h"
 
 namespace atlas::test {
 
 inline constexpr double kDegree = std::numbers::pi / 180;
+
+inline double degrees_between(const Vec3d& a, const Vec3d& b) {
+  return angle_between(a, b) / kDegree;
+}
 
 // Lights that turn about z: `turned` low over the horizon, where it moves a little less than so
 // many degrees, and `circled` on the horizon, where it moves exactly so many.

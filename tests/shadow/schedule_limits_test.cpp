@@ -12,12 +12,8 @@ namespace atlas {
 namespace {
 
 using test::circled;
+using test::degrees_between;
 using test::FakeRenderer;
-using test::kDegree;
-
-double degrees_between(const Vec3d& a, const Vec3d& b) {
-  return angle_between(a, b) / kDegree;
-}
 
 // Returns the numbers of all plans for a light of one degree a frame.
 std::vector<double> plans_of(const ScheduleOptions& options, bool scripted) {

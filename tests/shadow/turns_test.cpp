@@ -15,12 +15,9 @@ namespace atlas {
 namespace {
 
 using test::circled;
+using test::degrees_between;
 using test::FakeRenderer;
 using test::kDegree;
-
-double degrees_between(const Vec3d& a, const Vec3d& b) {
-  return angle_between(a, b) / kDegree;
-}
 
 // Returns the direction that a blend of two keys stands for.
 Vec3d shown_by(const FramePlan& plan) {
