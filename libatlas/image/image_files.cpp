@@ -19,6 +19,7 @@
 
 #include "libatlas/core/srgb.h"
 #include "libatlas/core/write_error.h"
+#include "libatlas/image/display_window.h"
 #include "libatlas/image/file_kind.h"
 #include "libatlas/image/image_claim.h"
 #include "libatlas/image/webp_alpha.h"
@@ -82,6 +83,12 @@ Result<Image<T>> read_pixels(const Source& source) {
   ImageClaim claim = spec_claim(input);
   claim.channel_bytes = sizeof(T);
   if (Status s = check_claim(claim, source.bytes, source.name); !s.ok()) return s;
+  const bool other_part = stores_another_part(input);
+  if (other_part) {
+    claim.width = spec.full_width;
+    claim.height = spec.full_height;
+    if (Status s = check_claim(claim, source.bytes, source.name); !s.ok()) return s;
+  }
   if (spec.depth > 1) {
     return Status(ErrorCode::unsupported,
                   source.name + ": is a volume of several slices: save one of them as an image");
@@ -95,6 +102,7 @@ Result<Image<T>> read_pixels(const Source& source) {
   if (!read || damaged(input, complaint)) {
     return failure(source.name, "image is damaged", complaint);
   }
+  if (other_part) return shown_part(image, spec);
   return image;
 }
 

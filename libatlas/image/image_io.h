@@ -23,7 +23,8 @@ Status check_image_module(const std::string& name);
 // Reads any format that OpenImageIO supports as 8-bit values, with all channels and without colour
 // conversion (an sRGB file stays sRGB-encoded). Colours are not multiplied by alpha: those that a
 // TIFF says are so, and all of OpenEXR files with an alpha as their last channel, are divided by
-// it, except where it is 0.
+// it, except where it is 0. Of OpenEXR files, the display window is read; texels of it that the
+// file does not hold are 0.
 Result<Image8> read_image8(const std::filesystem::path& path);
 
 // The same for an encoded file (PNG, JPEG or WebP) in memory. Its bytes tell the format; `name` is

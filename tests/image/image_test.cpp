@@ -4,7 +4,10 @@
 #include <zlib.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstring>
+#include <numeric>
 #include <random>
 
 #include "tests/scene/temp_folder.h"
@@ -53,6 +56,44 @@ TEST(Image, ImagesOutOfStepAreRefused) {
   EXPECT_EQ(write_exr(folder / "a.exr", linear).code(), ErrorCode::bad_input);
   EXPECT_EQ(write_exr(folder / "a.exr", ImageF(1, 1, 1025)).code(), ErrorCode::bad_input);
   EXPECT_FALSE(std::filesystem::exists(folder / "a.png"));
+}
+
+// Replaces the display window in the header of an OpenEXR file.
+std::string with_display_window(std::string bytes, const std::array<std::int32_t, 4>& corners) {
+  const std::string name("displayWindow\0box2i\0\x10\0\0\0", 24);
+  const std::size_t at = bytes.find(name);
+  EXPECT_NE(at, std::string::npos);
+  std::memcpy(bytes.data() + at + name.size(), corners.data(), sizeof corners);  // little-endian
+  return bytes;
+}
+
+// Renderers store the part of a picture that is not empty, or more than is shown.
+TEST(Image, OpenExrFilesAreReadAsTheyAreShown) {
+  const TempFolder folder;
+  ImageF stored(4, 3, 2);
+  std::iota(stored.texels.begin(), stored.texels.end(), 1.0f);
+  ASSERT_TRUE(write_exr(folder / "a.exr", stored).ok());
+  const std::string bytes = TempFolder::read(folder / "a.exr");
+  // Left, top, right and bottom, the last two inclusive, of windows around the stored texels,
+  // inside them, across their corner, and beside them.
+  for (const std::array<std::int32_t, 4> window :
+       {std::array{-2, -1, 5, 6}, {1, 1, 2, 1}, {2, -3, 9, 0}, {0, 0, 3, 2}, {10, 10, 11, 12}}) {
+    const auto path = folder.write("b.exr", with_display_window(bytes, window));
+    const Result<ImageF> shown = read_image_float(path);
+    ASSERT_TRUE(shown.ok()) << shown.status().message();
+    ASSERT_EQ(shown->width, window[2] - window[0] + 1);
+    ASSERT_EQ(shown->height, window[3] - window[1] + 1);
+    for (int y = window[1]; y <= window[3]; ++y) {
+      for (int x = window[0]; x <= window[2]; ++x) {
+        const bool held = x >= 0 && x < 4 && y >= 0 && y < 3;
+        for (int c = 0; c < 2; ++c)
+          EXPECT_EQ(shown->at(x - window[0], window[3] - y)[c], held ? stored.at(x, 2 - y)[c] : 0)
+              << x << ' ' << y;
+      }
+    }
+  }
+  const auto vast = folder.write("c.exr", with_display_window(bytes, {0, 0, 1 << 20, 1 << 20}));
+  EXPECT_EQ(read_image_float(vast).status().code(), ErrorCode::bad_input);
 }
 
 TEST(Image, PngReadsBackExactly) {
