@@ -167,7 +167,7 @@ void add_light_options(CLI::App& app, CommandLine& l, LightText& light) {
       ->transform(choices(ends))
       ->type_name("TEXT")
       ->default_str("loop");
-  app.add_option("--up", light.up, "the axis that points up (default: z for worlds that say so)")
+  app.add_option("--up", light.up, "the axis that points up (default: z for files that say so)")
       ->transform(choices(axes))
       ->type_name("TEXT")
       ->default_str("y");

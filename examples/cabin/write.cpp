@@ -93,11 +93,12 @@ atlas::Status write_obj(const fs::path& path, const Mesh& mesh, bool y_up,
   const fs::path library = fs::path(path).replace_extension(".mtl");
   const fs::path target = files.path_for(path);
   Writer out(target, context);
-  out.text("# Aircraft cabin in metres, ")
+  // atlas-play opens scenes of which a comment says that "the z axis points up" so.
+  out.text("# Aircraft cabin in metres; the ")
       .text(y_up ? "y" : "z")
       .text(
-          " up. v x y z r g b: illuminance in lux, linear RGB,\n"
-          "# not yet multiplied by the diffuse reflectance\nmtllib ");
+          " axis points up. v x y z r g b: illuminance in lux,\n"
+          "# linear RGB, not yet multiplied by the diffuse reflectance\nmtllib ");
   out.text(library.filename().string()).text("\n");
   for (std::size_t i = 0; i < mesh.vertices.size(); ++i) {
     const glm::vec3 p = turned(mesh.vertices[i].position, y_up), e = total_light(mesh, i);

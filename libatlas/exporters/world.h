@@ -94,8 +94,8 @@ Result<WorldFile> write_vrml(const World& world, const std::filesystem::path& pa
 
 inline constexpr const char* kFarOriginNode = "origin";
 
-// The line of WorldInfo that marks a world whose z axis points up; VRML itself has no property for
-// it.
+// The line of WorldInfo in VRML, and the comment in OBJ, that marks a world whose z axis points up;
+// the formats have no property for it.
 inline constexpr const char* kZUpNote = "the z axis points up";
 
 // Writes a Wavefront OBJ file and, beside it, an MTL file (named by safely_beside()) with one

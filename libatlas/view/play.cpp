@@ -20,9 +20,10 @@ namespace fs = std::filesystem;
 
 bool world_is_z_up(const fs::path& path) {
   std::error_code error;
-  if (lower_extension(path) != ".wrl" && lower_extension(path) != ".wrz") return false;
+  const std::string extension = lower_extension(path);
+  if (extension != ".wrl" && extension != ".wrz" && extension != ".obj") return false;
   if (!fs::is_regular_file(path, error)) return false;
-  std::string head(4096, '\0');                    // WorldInfo comes first
+  std::string head(4096, '\0');                    // WorldInfo and comments come first
   const gzFile file = gzopen(path.c_str(), "rb");  // reads plain text, too
   if (!file) return false;
   const int got = gzread(file, head.data(), unsigned(head.size()));

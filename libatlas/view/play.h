@@ -11,8 +11,8 @@
 
 namespace atlas {
 
-// Returns whether a file is a VRML world that says that its z axis points up. Returns false if the
-// file cannot be read.
+// Returns whether a file is a VRML or OBJ file that says at its beginning that its z axis points up
+// (kZUpNote). Returns false if the file cannot be read.
 bool world_is_z_up(const std::filesystem::path& path);
 
 // Reads the scene at `path` and returns arrays to draw. Errors: those of the readers; bad_input if

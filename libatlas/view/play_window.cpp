@@ -19,6 +19,7 @@
 #include "libatlas/core/glm_bridge.h"
 #include "libatlas/shadow/light_clock.h"
 #include "libatlas/view/bench.h"
+#include "libatlas/view/hand_light.h"
 #include "libatlas/view/picture_file.h"
 #include "libatlas/view/play.h"
 
@@ -139,13 +140,7 @@ class Player {
     clock_.advance(elapsed, paused_ || by_hand_ ? 0 : speed_);
     FrameLight light;
     if (by_hand_) {
-      const double a = glm::radians(double(azimuth_)), e = glm::radians(double(elevation_));
-      const glm::dvec3 up = glm::normalize(to_glm(wanted_.up));
-      const glm::dvec3 side = glm::normalize(
-          glm::cross(up, std::abs(up.x) < 0.9 ? glm::dvec3(1, 0, 0) : glm::dvec3(0, 1, 0)));
-      const glm::dvec3 other = glm::cross(up, side);
-      light.direction =
-          from_glm((side * std::cos(a) + other * std::sin(a)) * std::cos(e) + up * std::sin(e));
+      light.direction = hand_direction(hand_light_, wanted_.up);
     } else {
       light.direction = options_.light.direction(clock_.travelled());
       light.ahead = [this](int n) { return options_.light.direction(clock_.ahead(n)); };
@@ -258,13 +253,15 @@ class Player {
   void light_panel() {
     ImGui::Checkbox("pause", &paused_);
     ImGui::SameLine();
-    ImGui::Checkbox("by hand", &by_hand_);
+    if (ImGui::Checkbox("by hand", &by_hand_) && by_hand_)
+      hand_light_ = hand_light_of(options_.light.direction(clock_.travelled()), wanted_.up);
     ImGui::SliderFloat("degrees a second", &speed_, 0, 90);
     if (clock_.slowed())
       ImGui::TextDisabled("slowed to %.1f degrees a frame (--max-step)", options_.max_step);
     if (by_hand_) {
-      ImGui::SliderFloat("azimuth", &azimuth_, 0, 360);
-      ImGui::SliderFloat("elevation", &elevation_, 1, 89);
+      ImGui::SliderFloat("azimuth", &hand_light_.azimuth, 0, 360);
+      ImGui::SliderFloat("elevation", &hand_light_.elevation, -kSteepestHandLight,
+                         kSteepestHandLight);
     }
     slider("sun", wanted_.intensity, 0, 4);
     slider("ambient", wanted_.ambient, 0, 1);
@@ -311,7 +308,8 @@ class Player {
   std::size_t at_ = 0;
   LightClock clock_;
   double stride_ = 1, stride_range_ = 1;
-  float speed_ = 15, azimuth_ = 45, elevation_ = 45;
+  HandLight hand_light_;
+  float speed_ = 15;
   bool paused_ = false, by_hand_ = false, recording_ = false, shoot_ = false, panel_shown_ = true;
   std::string message_;
 };

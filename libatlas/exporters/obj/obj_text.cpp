@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "libatlas/exporters/world.h"
 #include "libatlas/scene/obj/obj_names.h"
 #include "libatlas/scene/scene.h"
 
@@ -21,6 +22,7 @@ std::string in_tile(float uv, std::uint32_t whole) {
 
 void write_obj_head(TextFile& file, const World& world, const std::filesystem::path& mtl) {
   if (!world.title.empty()) file.write("# " + one_line(world.title) + "\n");
+  if (world.up == Up::z) file.write("# " + std::string(kZUpNote) + "\n");
   for (const std::string& line : world.info) file.write("# " + one_line(line) + "\n");
   file.write("mtllib " + mtl.filename().string() + "\n");
 }
