@@ -86,8 +86,9 @@ void add_chart_options(CLI::App& app, ExportCommand& command) {
                "Charts and uvs, no light; on one page, or on as many as --atlases says");
   CLI::Option* scene = app.add_flag(
       "--keep-scene", options.keep_scene,
-      "Write uvs without light into the scene as it is: its objects, materials, textures, "
-      "normals and own uvs stay (.gltf, .glb; .obj has no room for textures and own uvs)");
+      "Write the uvs into the scene as it is, and its light, if it has any, as a lightmap: its "
+      "objects, materials, textures, normals and own uvs stay (.gltf, .glb; .obj has no room for "
+      "textures and own uvs)");
   app.add_option(
          "--uv-set", options.uv_set,
          "With --keep-scene: write the uvs as TEXCOORD_N in place of what it holds, such as "
@@ -258,9 +259,10 @@ std::optional<ExportCommand> parse_export_command(int argc, char** argv, int& ex
                 "--plan with --quiet tells nothing (leave one out, or add --report)");
     return std::nullopt;
   }
-  // An OBJ that keeps the scene has the colours of its vertices as the scene's file has them.
-  const bool as_written =
-      command.options.keep_scene && lower_extension(command.options.target) == ".obj";
+  // An OBJ that keeps the scene has the colours of its vertices as the scene's file has them,
+  // unless they become a lightmap.
+  const bool as_written = command.options.keep_scene && command.options.charts_only &&
+                          lower_extension(command.options.target) == ".obj";
   command.read.srgb_colours = command.options.quantity == Quantity::colour && !as_written;
   command.options.larger_plain_page = app.count("--atlas-size") == 0;
   if (app.count("--atlases") > 0) command.options.plain_pages = command.options.atlases;

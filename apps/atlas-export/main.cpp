@@ -28,6 +28,11 @@ void print_plan(const ExportPlan& plan, app::Terminal& terminal) {
   }
 }
 
+// Whether a scene is kept and gets a lightmap.
+bool has_lightmap(bool lit, const ExportOptions& options) {
+  return lit && options.keep_scene && !options.charts_only;
+}
+
 void print_result(const ExportReport& report, const ExportOptions& options,
                   app::Terminal& terminal) {
   if (!report.lit) {
@@ -44,6 +49,7 @@ void print_result(const ExportReport& report, const ExportOptions& options,
                                 ? fmt::format("{:.1f} MiB of graphics memory",
                                               double(report.gpu_bytes) / (1024.0 * 1024.0))
                                 : plain_pages_text(plain, options.udim)));
+  if (has_lightmap(report.lit, options)) terminal.line(lightmap_text(lightmap_of(report, options)));
 }
 
 // Names what a scene without light has at its vertices, which may be light under another name.
@@ -62,7 +68,8 @@ void name_unread_values(const Scene& scene, app::Terminal& terminal) {
 
 // Names the pages that an earlier export to the same name, with more pages or as EXR, has left:
 // they are not part of this world.
-void name_old_pages(const ExportReport& report, bool exr, app::Terminal& terminal) {
+void name_old_pages(const ExportReport& report, const ExportOptions& options,
+                    app::Terminal& terminal) {
   const std::filesystem::path folder = report.target.parent_path();
   if (report.gpu_bytes == 0) return;  // pages without images
   const auto name = [&](std::size_t written, const char* ending, const char* run) {
@@ -72,7 +79,9 @@ void name_old_pages(const ExportReport& report, bool exr, app::Terminal& termina
     const std::vector<std::filesystem::path> old = app::files_there(written, page);
     if (!old.empty()) terminal.line(app::old_pages_text(old, run, "this world"));
   };
-  if (!embeds_images(report.target)) name(report.pages.size(), ".png", "export with more pages");
+  if (!embeds_images(report.target) || options.keep_scene)
+    name(report.pages.size(), ".png", "export with more pages");
+  const bool exr = options.exr;
   name(exr ? report.pages.size() : 0, ".exr", exr ? "export with more pages" : "export with --exr");
 }
 
@@ -111,12 +120,13 @@ std::vector<std::filesystem::path> images_there(const Scene& scene, const Export
       std::filesystem::path image = scene_texture_path(scene, i, target);
       if (std::filesystem::exists(image, error)) there.push_back(std::move(image));
     }
-  } else if (scene.lit() && !options.charts_only) {
+  }
+  if (scene.lit() && !options.charts_only) {
     std::filesystem::directory_iterator at(folder, error);
     for (; !error && at != std::filesystem::directory_iterator(); at.increment(error)) {
       const std::filesystem::path ending = at->path().extension();
-      const bool page =
-          (ending == ".png" && !embeds_images(target)) || (ending == ".exr" && options.exr);
+      const bool page = (ending == ".png" && (!embeds_images(target) || options.keep_scene)) ||
+                        (ending == ".exr" && options.exr);
       if (page && named_as_page(at->path(), target)) there.push_back(at->path());
     }
   }
@@ -281,7 +291,7 @@ Status run(const app::ExportCommand& command, app::Terminal& terminal) {
   if (!command.options.charts_only && !command.options.keep_scene)
     name_unread_values(loaded->scene, terminal);
   for (const std::string& line : report->not_kept) terminal.line("not kept: " + line);
-  name_old_pages(*report, command.options.exr, terminal);
+  name_old_pages(*report, command.options, terminal);
   return write_report(std::move(*report), reading, command, terminal);
 }
 

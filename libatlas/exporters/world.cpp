@@ -95,6 +95,7 @@ Status check_world(const World& world) {
                                page.one_sided.size(), page.indices.size() / 3));
     }
   }
+  if (world.lightmap && !world.scene) return wrong("it has a lightmap, but no scene to keep");
   return world.scene ? check_kept_scene(world) : Status();
 }
 

@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -39,6 +40,16 @@ struct Page {
   std::vector<bool> one_sided = {};
 };
 
+// The images of the light of a scene that is kept, addressed by the world's uvs.
+struct Lightmap {
+  // File names beside the world: a .png, sRGB-encoded, and if asked for an .exr of the light
+  // itself.
+  std::vector<std::string> images = {};
+  // The light that the .png shows as white, in the unit of Scene::illumination; 0: it does not grow
+  // in proportion to light, because a tone curve bends it.
+  double white = 0;
+};
+
 struct World {
   Vec3d origin = {};                  // added to every position to get the coordinates of the file
   double metres_per_unit = 1;         // > 0
@@ -60,6 +71,10 @@ struct World {
   // For `scene` in glTF: the new uvs become the set TEXCOORD_<uv_set>, 1..7, in place of what it
   // holds. 0: the first set that is free. OBJ has one set and ignores this.
   int uv_set = 0;
+  // For `scene`: with a lightmap, vertices are written without light, by which viewers would
+  // multiply it. glTF names it as asset.extras.lightmap (images, texCoord and white), OBJ in a
+  // comment.
+  std::optional<Lightmap> lightmap = {};
 };
 
 struct WorldFile {

@@ -12,6 +12,7 @@
 #include "libatlas/core/clock.h"
 #include "libatlas/core/parallel.h"
 #include "libatlas/core/progress.h"
+#include "libatlas/exporters/world.h"
 #include "libatlas/image/image_io.h"
 #include "libatlas/pipeline/advice.h"
 #include "libatlas/pipeline/assemble_world.h"
@@ -53,10 +54,10 @@ class Export {
          const std::function<void(const StageReport&)>& stage_done, const Context& context)
       : scene_(loaded.scene),
         view_(loaded.view),
-        options_(options),
+        options_(planned_options(loaded.scene, options)),
         context_(context),
-        plan_(make_plan(scene_, options)),
-        report_(planned_report(loaded, plan_, options)),
+        plan_(make_plan(scene_, options_)),
+        report_(planned_report(loaded, plan_, options_)),
         record_(report_, stage_done, context) {}
 
   Result<ExportReport> run() {
@@ -84,7 +85,7 @@ class Export {
     report_.carried_out = true;
     for (std::string& line : advice_on(report_, options_))
       report_.advice.push_back(std::move(line));
-    if (plan_.bake) {
+    if (plan_.bake && !options_.keep_scene) {
       for (std::string& line : advice_on_materials(scene_, options_.quantity))
         report_.advice.push_back(std::move(line));
     }
@@ -366,7 +367,7 @@ class Export {
 
   const Scene& scene_;
   const std::optional<FileView> view_;
-  const ExportOptions& options_;
+  const ExportOptions options_;
   const Context& context_;
   const ExportPlan plan_;
 
@@ -386,6 +387,25 @@ class Export {
 };
 
 }  // namespace
+
+Lightmap lightmap_of(const ExportReport& report, const ExportOptions& options) {
+  const std::string name = page_name(options.target, 0);
+  Lightmap map;
+  map.images.push_back(name + ".png");
+  if (options.exr) map.images.push_back(name + ".exr");
+  if (options.tone.op == ToneOperator::linear) map.white = report.exposure_white;
+  return map;
+}
+
+std::string lightmap_text(const Lightmap& lightmap) {
+  const std::string scale =
+      lightmap.white > 0
+          ? fmt::format("white is {:.4g} of the light at the vertices", lightmap.white)
+          : "after the tone curve";
+  std::string text = fmt::format("lightmap: {} (sRGB-encoded, {})", lightmap.images[0], scale);
+  if (lightmap.images.size() > 1) text += fmt::format(", {} (linear)", lightmap.images[1]);
+  return text;
+}
 
 std::string plain_pages_text(std::span<const Extent> pages, bool udim) {
   const Extent page = pages[0];

@@ -152,9 +152,10 @@ class StepList {
 
   void light(std::uint64_t textured_triangles) {
     add_baked("reflectance", plan_.sample_reflectance,
-              options_.quantity == Quantity::luminance ? "the values are luminance already"
-              : options_.quantity == Quantity::colour  ? "the values are colours already"
-              : textured_triangles == 0                ? "no textures: one colour a material"
+              options_.keep_scene ? "a lightmap holds the light that falls on surfaces"
+              : options_.quantity == Quantity::luminance ? "the values are luminance already"
+              : options_.quantity == Quantity::colour    ? "the values are colours already"
+              : textured_triangles == 0                  ? "no textures: one colour a material"
                                         : fmt::format("{} textured triangles", textured_triangles));
     add_baked("tiling", true,
               "charts longer than half a page are cut, so that none holds the others' scale down");
@@ -193,8 +194,9 @@ class StepList {
     add("simplify", plan_.simplify,
         plan_.simplify
             ? fmt::format("surface and texture slip at most {:g} texels", options_.simplify_slip)
-        : !options_.simplify ? "switched off"
-                             : "without baked light the fine mesh is the result");
+        : plan_.bake && options_.keep_scene ? "the scene is kept"
+        : !options_.simplify                ? "switched off"
+                                            : "without baked light the fine mesh is the result");
     add_baked(
         "error", options_.measure_error,
         options_.measure_error ? "100000 points of the surface against the pages" : "switched off");
@@ -235,7 +237,17 @@ TextureOptions texture_options(const ExportPlan& plan, const ExportReport& repor
   return texture;
 }
 
-ExportPlan make_plan(const Scene& scene, const ExportOptions& options) {
+ExportOptions planned_options(const Scene& scene, const ExportOptions& options) {
+  ExportOptions planned = options;
+  if (!options.keep_scene || options.charts_only || !scene.lit()) return planned;
+  planned.atlases = 1;
+  planned.simplify = false;
+  if (options.quantity == Quantity::illuminance) planned.quantity = Quantity::luminance;
+  return planned;
+}
+
+ExportPlan make_plan(const Scene& scene, const ExportOptions& asked) {
+  const ExportOptions options = planned_options(scene, asked);
   const SceneFacts facts = gather_facts(scene);
   ExportPlan plan;
   const double metres = scene.metres_per_unit;
@@ -275,12 +287,6 @@ ExportReport planned_report(const LoadedScene& loaded, const ExportPlan& plan,
 
 Status check_plan(const ExportPlan& plan, const ExportOptions& options) {
   const std::filesystem::path& target = options.target;
-  if (options.keep_scene && plan.bake) {
-    return {ErrorCode::bad_option,
-            "ExportOptions::keep_scene: this scene carries light, whose textures take the place of "
-            "its own (add "
-            "ExportOptions::charts_only to get uvs without light)"};
-  }
   if (options.udim && plan.bake) {
     return {ErrorCode::bad_option,
             "ExportOptions::udim: this scene carries light, whose pages are images with materials "
@@ -290,7 +296,8 @@ Status check_plan(const ExportPlan& plan, const ExportOptions& options) {
     if (Status s = check_writable(file.path); !s.ok()) return s;
   if (!target.empty()) {
     if (Status s = check_writable(target); !s.ok() || !plan.bake) return s;
-    const std::string last_page = page_name(target, options.atlases - 1) + ".png";
+    const std::string last_page =
+        page_name(target, options.keep_scene ? 0 : options.atlases - 1) + ".png";
     if (Status s = check_writable(target.parent_path() / last_page); !s.ok()) return s;
   }
   if (!plan.bake) return {};

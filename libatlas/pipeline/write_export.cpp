@@ -98,9 +98,10 @@ World make_world(const ExportToWrite& made, const WorldMesh& mesh, ExportReport&
     world.info.push_back(plain_pages_text(made.layout.pages, options.udim));
     if (options.udim) make_tiles(placed, world);
   } else {
-    for (std::size_t p = 0; p < made.layout.pages.size(); ++p)
-      world.info.push_back(
-          uv_page_text(p, made.layout.pages[p].width, made.layout.pages[p].height));
+    const std::vector<Extent>& pages = made.layout.pages;
+    for (std::size_t p = 0; p < pages.size(); ++p)
+      world.info.push_back(options.keep_scene ? uv_page_text(pages[p].width, pages[p].height)
+                                              : uv_page_text(p, pages[p].width, pages[p].height));
   }
   MeshView shape;
   shape.positions = made.scene.positions;
@@ -114,7 +115,12 @@ World make_world(const ExportToWrite& made, const WorldMesh& mesh, ExportReport&
   if (options.keep_scene) {
     keep_scene(made.scene, made.charts, world);
     world.uv_set = options.uv_set;
-  } else if (holds_viewpoint(options.target)) {
+    if (!made.baked) return world;
+    world.lightmap = lightmap_of(report, options);
+    world.info.push_back(lightmap_text(*world.lightmap));
+    return world;
+  }
+  if (holds_viewpoint(options.target)) {
     world.viewpoint = viewpoint_of(made, report.tone, context);
   }
   for (std::size_t p = 0; p < made.image_sources.size(); ++p) {
@@ -167,7 +173,8 @@ Result<StageOutcome> write_export(const ExportToWrite& made, AtomicFiles& files,
   WorldMesh mesh = made.coarse ? WorldMesh{made.coarse->indices, made.coarse->uv_indices,
                                            made.coarse->triangle_chart}
                                : fine.view();
-  if (made.baked) mesh.one_sided = one_sided_triangles(made.scene, made.charts, mesh, context);
+  if (made.baked && !made.options.keep_scene)
+    mesh.one_sided = one_sided_triangles(made.scene, made.charts, mesh, context);
   if (context.cancelled()) return Status::cancelled();
   report.triangles_out = mesh.triangle_chart.size();
   const World world = make_world(made, mesh, report, context);
@@ -175,7 +182,7 @@ Result<StageOutcome> write_export(const ExportToWrite& made, AtomicFiles& files,
   if (!world_file.ok()) return world_file.status();
   report.not_kept = world_file->not_kept;
   if (world_file->far_origin) report.advice.push_back(on_far_origin(world));
-  if (embeds_images(made.options.target)) {
+  if (embeds_images(made.options.target) && !made.options.keep_scene) {
     for (const auto& image : made.image_sources) files.discard(image);
     for (PageReport& page : report.pages) page.image.clear();
   }

@@ -271,16 +271,12 @@ TEST(KeepScene, TheOriginIsAddedAgain) {
   EXPECT_EQ(back->scene.origin.y + back->scene.positions[2].y, 4000001.25);
 }
 
-TEST(KeepScene, IsRefusedWhereLightIsBakedAndForVrml) {
+TEST(KeepScene, IsRefusedForVrml) {
   const TempFolder folder;
   const LoadedScene lit = lit_scene(box(2));
   ExportOptions options;
   options.target = folder / "w.glb";
-  options.keep_scene = true;
-  const auto baked = export_world(lit, options, {}, {});
-  EXPECT_EQ(baked.status().code(), ErrorCode::bad_option);
-  EXPECT_NE(baked.status().message().find("ExportOptions::charts_only"), std::string::npos);
-  options.charts_only = true;
+  options.charts_only = options.keep_scene = true;
   EXPECT_TRUE(export_world(lit, options, {}, {}).ok());
   options.target = folder / "w.wrl";
   EXPECT_EQ(export_world(lit, options, {}, {}).status().code(), ErrorCode::bad_option);

@@ -62,6 +62,13 @@ void GltfDocument::name_uv_sets(const std::set<std::int64_t>& sets) {
   info = std::move(named);
 }
 
+void GltfDocument::name_lightmap(const World& world, std::int64_t uv_set) {
+  if (!world.lightmap) return;
+  nlohmann::json map = {{"images", world.lightmap->images}, {"texCoord", uv_set}};
+  if (world.lightmap->white > 0) map["white"] = world.lightmap->white;
+  json["asset"]["extras"]["lightmap"] = std::move(map);
+}
+
 std::size_t GltfDocument::add_view(const void* data, std::size_t size, nlohmann::json view) {
   while (bytes_.size() % 4 != 0) bytes_.push_back('\0');
   view["buffer"] = 0;

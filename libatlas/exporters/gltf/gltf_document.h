@@ -50,6 +50,9 @@ class GltfDocument {
   // line that says a page of uvs (scene/uv_page.h) becomes one for each set.
   void name_uv_sets(const std::set<std::int64_t>& sets);
 
+  // Names the world's lightmap, if it has one, with the set of uvs that addresses it.
+  void name_lightmap(const World& world, std::int64_t uv_set);
+
   // Returns an image whose file is embedded in a .glb (embedded_image), or lies beside a .gltf
   // (image_beside).
   nlohmann::json embedded_image(std::span<const char> bytes, const char* mime_type);

@@ -145,10 +145,12 @@ const char* light_attribute(const std::vector<Vec3f>& light) {
   return std::all_of(light.begin(), light.end(), is_colour) ? kColours : "_ILLUMINANCE";
 }
 
-// Returns whether alpha of the vertices is written: it needs colours beside it.
-bool holds_alpha(const Scene& scene) {
+// Returns whether alpha of the vertices is written: it needs colours beside it, which are white
+// with a lightmap.
+bool holds_alpha(const World& world) {
+  const Scene& scene = *world.scene;
   return scene.lit() && !scene.vertex_opacity.empty() &&
-         light_attribute(scene.illumination) == kColours;
+         (world.lightmap || light_attribute(scene.illumination) == kColours);
 }
 
 class SceneWriter {
@@ -160,7 +162,7 @@ class SceneWriter {
         texcoord_(first_equals(scene_.texcoords)),
         normal_(first_equals(scene_.normals)),
         light_(light_attribute(scene_.illumination)),
-        writes_alpha_(holds_alpha(scene_)) {}
+        writes_alpha_(holds_alpha(world)) {}
 
   // Adds the part as a primitive to its object's mesh.
   void add(const ScenePart& part, std::size_t material, WorldFile& result) {
@@ -241,7 +243,8 @@ class SceneWriter {
   // them black, so a part whose vertices all have 0 and are opaque gets no light.
   void add_light(const std::vector<Key>& vertices, json& to) {
     if (!scene_.lit()) return;
-    const std::vector<Vec3f> light = gather(scene_.illumination, vertices, 0);
+    std::vector<Vec3f> light = gather(scene_.illumination, vertices, 0);
+    if (world_.lightmap) std::fill(light.begin(), light.end(), Vec3f{1, 1, 1});
     if (writes_alpha_) {
       const std::vector<float> alpha = gather(scene_.vertex_opacity, vertices, 0);
       if (std::any_of(alpha.begin(), alpha.end(), [](float a) { return a != 1; })) {
@@ -249,6 +252,7 @@ class SceneWriter {
         return;
       }
     }
+    if (world_.lightmap) return;
     const bool any = std::any_of(light.begin(), light.end(), [](auto& v) { return v != Vec3f{}; });
     if (any) to[light_] = document_.add_vectors(light);
   }
@@ -278,10 +282,11 @@ class SceneWriter {
 
 // Counts what is lost: what an MTL says of materials and this file does not, what the reader left
 // in the scene's file, and colours that exceed glTF's range.
-std::vector<std::string> losses_of(const Scene& scene) {
+std::vector<std::string> losses_of(const World& world) {
+  const Scene& scene = *world.scene;
   Losses losses;
   losses.add(scene.not_read);
-  if (!holds_alpha(scene)) count_vertex_alpha(scene, losses);
+  if (!holds_alpha(world)) count_vertex_alpha(scene, losses);
   for (const Material& material : scene.materials) {
     losses.add("colours of materials beyond 0 to 1, limited to it",
                !is_reflectance(material.diffuse));
@@ -310,8 +315,9 @@ Result<WorldFile> write_gltf_scene(const World& world, const fs::path& path, Ato
   writer.add_nodes(result);
   result.uv_set = fmt::format("TEXCOORD_{}", writer.last_set());
   document.name_uv_sets(writer.new_sets());
+  document.name_lightmap(world, writer.last_set());
   document.add_info("the new uvs: " + result.uv_set);
-  result.not_kept = losses_of(*world.scene);
+  result.not_kept = losses_of(world);
   if (Status s = document.write(path, files, result); !s.ok()) return s;
   return result;
 }

@@ -92,6 +92,7 @@ class FileWriter {
     name_asset();
     result.uv_set = texcoord_name(set_);
     document_.add_info("the new uvs: " + result.uv_set);
+    if (left_out_colours_) count_vertex_alpha(scene_, losses_);
     result.not_kept = losses_.lines();
     return {};
   }
@@ -105,6 +106,7 @@ class FileWriter {
     for (std::int64_t set = 0; set <= set_; ++set)
       if (!own_sets_.contains(set)) new_sets.insert(set);
     document_.name_uv_sets(new_sets);
+    document_.name_lightmap(world_, set_);
     json& asset = document_.json["asset"];
     asset = merge_assets(source_.document.value("asset", json()), asset, new_sets);
   }
@@ -225,9 +227,14 @@ class FileWriter {
     for (const Key& key : unified.vertices) vertices.push_back(key[0]);
     json primitive = primitive_json(mesh, number);
     for (const char* key : {"mode", "attributes", "targets", "material"}) primitive.erase(key);
-    primitive["attributes"] = attributes(from, vertices);
+    const std::string light = light_on_map(from);
+    const auto kept = [&light](std::map<std::string, int> attributes) {
+      attributes.erase(light);
+      return attributes;
+    };
+    primitive["attributes"] = attributes(kept(from.attributes), vertices);
     for (const auto& target : from.targets)
-      primitive["targets"].push_back(morph_target(target, vertices));
+      primitive["targets"].push_back(morph_target(kept(target), vertices));
     const auto sets = sets_of(rows_names(primitive["attributes"]));
     // Textures that used the uvs which are replaced are now those of the new ones.
     auto usable = sets;
@@ -244,8 +251,23 @@ class FileWriter {
     return primitive;
   }
 
-  json attributes(const tinygltf::Primitive& from, const std::vector<std::uint32_t>& vertices) {
-    return rows_of(from.attributes, vertices, "attributes that are shorter than their positions");
+  // Returns the attribute whose values are on the lightmap and left out here: viewers multiply base
+  // colours by COLOR_0. Colours of unlit materials are no light. Empty: there is none.
+  std::string light_on_map(const tinygltf::Primitive& from) {
+    if (!world_.lightmap || source_.other_light) return "";
+    if (from.attributes.contains("_ILLUMINANCE")) return "_ILLUMINANCE";
+    const auto& materials = source_.model.materials;
+    const auto material = static_cast<std::size_t>(from.material);
+    const bool unlit =
+        from.material >= 0 && materials[material].extensions.contains("KHR_materials_unlit");
+    if (unlit || !from.attributes.contains("COLOR_0")) return "";
+    left_out_colours_ = true;
+    return "COLOR_0";
+  }
+
+  json attributes(const std::map<std::string, int>& from,
+                  const std::vector<std::uint32_t>& vertices) {
+    return rows_of(from, vertices, "attributes that are shorter than their positions");
   }
 
   json rows_of(const std::map<std::string, int>& attributes,
@@ -295,7 +317,7 @@ class FileWriter {
   // Adds light that came from another file, beside the primitive's own attributes.
   void add_light(const GltfShownPrimitive& shown, const std::vector<std::uint32_t>& vertices,
                  json& to) {
-    if (!source_.other_light || !scene_.lit()) return;
+    if (!source_.other_light || !scene_.lit() || world_.lightmap) return;
     std::vector<Vec3f> light;
     for (const std::uint32_t v : vertices)
       light.push_back(scene_.illumination[shown.first_position + v]);
@@ -311,6 +333,7 @@ class FileWriter {
   KeptMaterials materials_;
   const std::int64_t set_;           // number of the new uv set
   std::set<std::int64_t> own_sets_;  // those that any primitive shown keeps
+  bool left_out_colours_ = false;    // COLOR_0 of any primitive
 };
 
 }  // namespace

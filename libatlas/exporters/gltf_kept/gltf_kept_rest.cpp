@@ -147,6 +147,11 @@ json merge_assets(const json& source, const json& own, const std::set<std::int64
   const json added = own.value("extras", json::object());
   if (added.contains("title") && !extras.contains("title")) extras["title"] = added["title"];
   for (const json& line : added.value("info", json::array())) info.push_back(line);
+  // An earlier lightmap whose uvs are replaced is none any more.
+  if (const auto map = extras.find("lightmap"); ours && map != extras.end())
+    if (!map->is_object() || new_sets.contains(map->value("texCoord", std::int64_t{-1})))
+      extras.erase(map);
+  if (added.contains("lightmap")) extras["lightmap"] = added["lightmap"];
   merged["version"] = own["version"];
   merged["generator"] = own["generator"];
   return merged;

@@ -29,7 +29,7 @@ void write_obj_head(TextFile& file, const World& world, const std::filesystem::p
 
 void write_obj_points(TextFile& file, const World& world, std::span<const std::uint32_t> points,
                       const Context& context) {
-  const bool lit = world.scene != nullptr && world.scene->lit();
+  const bool lit = world.scene != nullptr && world.scene->lit() && !world.lightmap;
   file.write_items(points.size(), context, [&](TextBuffer& out, std::size_t i) {
     out.text("v ");
     out.position(world.origin, world.positions[points[i]]);

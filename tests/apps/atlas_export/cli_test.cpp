@@ -97,6 +97,25 @@ TEST_F(AtlasExport, TheReportHasNoKeysOfWhatNobodyMeasured) {
   }
 }
 
+// The images lie beside a .glb, too, and those of an earlier export are named there.
+TEST_F(AtlasExport, TellsTheLightmapOfAKeptScene) {
+  write("box.obj", lit_box(4));
+  write("w_1.png", "of an earlier export");
+  const RunResult r =
+      run(fmt::format("{0}/box.obj -o {0}/w.glb --keep-scene --exr --white 2.5 --report {0}/r.json",
+                      dir_.string()));
+  ASSERT_EQ(r.exit_code, 0) << r.output;
+  for (const char* line :
+       {"lightmap: w_0.png (sRGB-encoded, white is 2.5 of the light at the vertices), w_0.exr "
+        "(linear)\n",
+        "the new uvs: TEXCOORD_1", "w_1.png"})
+    EXPECT_NE(r.output.find(line), std::string::npos) << r.output;
+  EXPECT_TRUE(fs::exists(dir_ / "w_0.png") && fs::exists(dir_ / "w_0.exr"));
+  const auto report = nlohmann::json::parse(slurp(dir_ / "r.json"));
+  ASSERT_EQ(report["packing"]["pages"].size(), 1u);
+  EXPECT_EQ(report["packing"]["pages"][0]["image"], "w_0.png");
+}
+
 // What is kept of a scene shows in the result. The program reports what is not kept, and where the
 // new uvs are.
 TEST_F(AtlasExport, TellsWhatItDoesNotKeep) {

@@ -161,15 +161,32 @@ TEST_F(AtlasExport, OverwritesNothingBehindLinks) {
 TEST_F(AtlasExport, ScenesThatCannotBeKept) {
   const fs::path scene = write("box.obj", lit_box(2));
   expect_refusal(scene, "--keep-scene: VRML has no room", "--keep-scene --charts-only");
+  expect_refusal(scene, "--keep-scene: VRML has no room", "--keep-scene");
   const auto before = files();
-  for (const char* more : {"-q", "-q --no-simplify --atlases 1"}) {
+  const RunResult r =
+      run(fmt::format("{0}/box.obj -o {0}/w.glb --keep-scene --atlases 2", dir_.string()));
+  EXPECT_EQ(r.exit_code, 2);
+  EXPECT_NE(r.output.find("on one page (leave out --atlases"), std::string::npos) << r.output;
+  EXPECT_EQ(files(), before);
+}
+
+TEST_F(AtlasExport, ALightmapOverwritesNoTextureOfItsScene) {
+  write("box.obj", lit_box(2));
+  ASSERT_EQ(run(fmt::format("{0}/box.obj -o {0}/w.wrl -q", dir_.string())).exit_code, 0);
+  const std::string image = slurp(dir_ / "w_0.png");
+  write("t.mtl", "newmtl t\nmap_Kd w_0.png\n");
+  write("t.obj",
+        "mtllib t.mtl\nv 0 0 0 1 2 3\nv 1 0 0 1 2 3\nv 0 1 0 1 2 3\nvt 0 0\nvt 1 0\nvt 0 1\n"
+        "usemtl t\nf 1/1 2/2 3/3\n");
+  const auto before = files();
+  for (const char* target : {"w.glb", "w.gltf", "w.obj"}) {
     const RunResult r =
-        run(fmt::format("{0}/box.obj -o {0}/w.glb --keep-scene {1}", dir_.string(), more));
+        run(fmt::format("{0}/t.obj -o {0}/{1} --keep-scene -q", dir_.string(), target));
     EXPECT_EQ(r.exit_code, 2);
-    EXPECT_EQ(std::count(r.output.begin(), r.output.end(), '\n'), 1) << r.output;
-    EXPECT_NE(r.output.find("add --charts-only"), std::string::npos) << r.output;
+    EXPECT_NE(r.output.find("would overwrite"), std::string::npos) << r.output;
   }
   EXPECT_EQ(files(), before);
+  EXPECT_EQ(slurp(dir_ / "w_0.png"), image);
 }
 
 // The textures of a scene that is kept are copied beside a .gltf, but never over one of them.

@@ -1,0 +1,250 @@
+// Exports that keep a lit scene: its light is on a lightmap, which the new uvs address.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+#include <string>
+
+#include "libatlas/image/image_io.h"
+#include "libatlas/pipeline/export_world.h"
+#include "libatlas/scene/check_scene.h"
+#include "tests/pipeline/lit_scene.h"
+#include "tests/scene/gltf_maker.h"
+#include "tests/scene/temp_folder.h"
+#include "tests/support/gltf_oracle.h"
+#include "tests/support/kept_scene.h"
+
+namespace atlas::test {
+namespace {
+
+// Light that the triangles interpolate exactly, whatever their vertices are.
+std::array<double, 3> light_at(double x, double y, double z) {
+  return {900 + 120 * x, 700 - 80 * y + 40 * z, 500 + 60 * z};
+}
+
+// Returns a torus of three materials, none of which reflects all light.
+LoadedScene torus_scene() {
+  LoadedScene loaded = lit_scene(torus(48, 24));
+  Scene& scene = loaded.scene;
+  scene.materials = {{"brick", {0.6f, 0.2f, 0.1f}, -1}, {"soot", {0.02f, 0.02f, 0.02f}, -1}};
+  for (std::size_t t = 0; t < scene.triangle_count(); ++t)
+    scene.triangle_material[t] = scene.positions[scene.indices[3 * t]].x > 0;
+  for (std::size_t i = 0; i < scene.positions.size(); ++i) {
+    const Vec3f p = scene.positions[i];
+    const auto light = light_at(p.x, p.y, p.z);
+    scene.illumination[i] = {float(light[0]), float(light[1]), float(light[2])};
+  }
+  EXPECT_TRUE(complete_scene(scene).ok());
+  return loaded;
+}
+
+ExportOptions lightmap_options(const std::filesystem::path& target) {
+  ExportOptions options;
+  options.target = target;
+  options.atlas_size = 512;
+  options.keep_scene = true;
+  options.exr = true;
+  options.threshold = 0;
+  return options;
+}
+
+// Returns the bilinear interpolation between the centres of texels, as graphics hardware does it.
+template <class T>
+double look_up(const Image<T>& image, double u, double v, int channel) {
+  const double x = u * image.width - 0.5, y = v * image.height - 0.5;
+  const int x0 = int(std::floor(x)), y0 = int(std::floor(y));
+  const auto texel = [&](int i, int j) {
+    i = std::clamp(i, 0, image.width - 1);
+    j = std::clamp(j, 0, image.height - 1);
+    return double(image.at(i, j)[channel]);
+  };
+  const double fx = x - x0, fy = y - y0;
+  return (texel(x0, y0) * (1 - fx) + texel(x0 + 1, y0) * fx) * (1 - fy) +
+         (texel(x0, y0 + 1) * (1 - fx) + texel(x0 + 1, y0 + 1) * fx) * fy;
+}
+
+double srgb_decoded(double code) {
+  return code <= 0.04045 ? code / 12.92 : std::pow((code + 0.055) / 1.055, 2.4);
+}
+
+// Compares both images with the light at points of the triangles, whose uvs `uv_of` returns.
+template <class UvOf>
+void expect_light(const std::vector<KeptTriangle>& triangles, const UvOf& uv_of,
+                  const std::filesystem::path& page, double white) {
+  const Result<ImageF> light = read_image_float(page.string() + ".exr");
+  const Result<Image8> display = read_image8(page.string() + ".png");
+  ASSERT_TRUE(light.ok() && display.ok());
+  ASSERT_EQ(light->width, display->width);
+  std::mt19937 random(7);
+  std::uniform_real_distribution<double> share(0, 1);
+  for (const KeptTriangle& t : triangles) {
+    double a = share(random), b = share(random);
+    if (a + b > 1) a = 1 - a, b = 1 - b;
+    const double weights[3] = {a, b, 1 - a - b};
+    double p[3] = {}, u = 0, v = 0;
+    for (int c = 0; c < 3; ++c) {
+      const KeptCorner& corner = t.corners[std::size_t(c)];
+      p[0] += weights[c] * corner.position.x;
+      p[1] += weights[c] * corner.position.y;
+      p[2] += weights[c] * corner.position.z;
+      u += weights[c] * uv_of(corner).x;
+      v += weights[c] * uv_of(corner).y;
+    }
+    const auto wanted = light_at(p[0], p[1], p[2]);
+    for (int k = 0; k < 3; ++k) {
+      ASSERT_NEAR(look_up(*light, u, v, k), wanted[std::size_t(k)], 4);  // of 400 to 1300
+      const double shown = white * srgb_decoded(look_up(*display, u, v, k) / 255);
+      ASSERT_NEAR(shown, std::min(white, wanted[std::size_t(k)]), 0.01 * white);
+    }
+  }
+}
+
+TEST(Lightmap, HoldsTheLightThatFallsOnAKeptScene) {
+  const LoadedScene scene = torus_scene();
+  for (const char* name : {"w.glb", "w.gltf", "w.obj"}) {
+    const TempFolder folder;
+    const ExportOptions options = lightmap_options(folder / name);
+    const auto report = export_world(scene, options, {}, {});
+    ASSERT_TRUE(report.ok()) << report.status().message();
+    EXPECT_EQ(report->triangles_out, scene.scene.triangle_count());
+    EXPECT_FALSE(report->simplified);
+    ASSERT_EQ(report->pages.size(), 1u);
+    EXPECT_LE(report->pages[0].width, 512);
+    const Lightmap map = lightmap_of(*report, options);
+    EXPECT_EQ(map.images, (std::vector<std::string>{"w_0.png", "w_0.exr"}));
+    EXPECT_GT(map.white, 500);
+    if (name == std::string("w.obj")) {
+      const auto kept = read_kept_obj(folder / name);
+      ASSERT_EQ(kept.size(), scene.scene.triangle_count());
+      expect_light(
+          kept, [](const KeptCorner& c) { return c.texcoord; }, folder / "w_0", map.white);
+      const std::string text = TempFolder::read(folder / name);
+      EXPECT_NE(text.find("# lightmap: w_0.png (sRGB-encoded, white is "), std::string::npos);
+      EXPECT_EQ(text.find('\n', text.find("\nv ") + 1) - text.find("\nv ") < 40, true) << "light";
+    } else {
+      const auto kept = read_kept_gltf(folder / name);
+      ASSERT_EQ(kept.size(), scene.scene.triangle_count());
+      expect_light(
+          kept, [](const KeptCorner& c) { return c.uv; }, folder / "w_0", map.white);
+      const GltfOracle file(folder / name);
+      const json& named = file.document["asset"]["extras"]["lightmap"];
+      EXPECT_EQ(named["images"], json(map.images));
+      EXPECT_EQ(named["texCoord"], 1);
+      EXPECT_EQ(named["white"], map.white);
+      EXPECT_EQ(file.document["materials"].size(), 2u);
+      for (const OracleTriangle& t : file.triangles()) {
+        EXPECT_FALSE(t.attributes.contains("COLOR_0") || t.attributes.contains("_ILLUMINANCE"));
+      }
+    }
+  }
+}
+
+// A curve bends the light of the PNG, so no factor turns it into light again.
+TEST(Lightmap, NamesNoWhiteAfterAToneCurve) {
+  const TempFolder folder;
+  ExportOptions options = lightmap_options(folder / "w.glb");
+  options.exr = false;
+  options.tone.op = ToneOperator::reinhard;
+  const auto report = export_world(torus_scene(), options, {}, {});
+  ASSERT_TRUE(report.ok()) << report.status().message();
+  EXPECT_EQ(lightmap_text(lightmap_of(*report, options)),
+            "lightmap: w_0.png (sRGB-encoded, after the tone curve)");
+  const json map = GltfOracle(folder / "w.glb").document["asset"]["extras"]["lightmap"];
+  EXPECT_FALSE(map.contains("white"));
+  EXPECT_EQ(map["images"], json::array({"w_0.png"}));
+  EXPECT_FALSE(std::filesystem::exists(folder / "w_0.exr"));
+}
+
+// Three squares that stand apart: the colours of the first are light, the second is lit by another
+// attribute, so that its colours are its own, and the third is unlit.
+Gltf three_squares() {
+  Gltf gltf;
+  const std::vector<std::uint16_t> corners{0, 1, 2, 0, 2, 3};
+  const int positions = gltf.floats(kSquare, "VEC3", 3), indices = gltf.indices(corners);
+  const int colours =
+      gltf.floats({1, 0, 0, 0.5f, 1, 1, 0, 0.5f, 1, 0, 0, 1, 0, 1, 1, 1}, "VEC4", 4);
+  const int light = gltf.floats({9, 8, 7, 9, 8, 8, 9, 7, 7, 9, 8, 5}, "VEC3", 3);
+  json nodes = json::array(), meshes = json::array();
+  for (int i = 0; i < 3; ++i) {
+    json primitive = {{"attributes", {{"POSITION", positions}, {"COLOR_0", colours}}},
+                      {"indices", indices},
+                      {"material", i == 2 ? 1 : 0}};
+    if (i == 1) primitive["attributes"]["_ILLUMINANCE"] = light;
+    meshes.push_back({{"primitives", json::array({primitive})}});
+    nodes.push_back({{"mesh", i}, {"translation", {2 * i, 0, 0}}, {"name", std::to_string(i)}});
+  }
+  gltf.j["materials"] = {
+      {{"name", "lit"}},
+      {{"name", "unlit"}, {"extensions", {{"KHR_materials_unlit", json::object()}}}}};
+  gltf.j["extensionsUsed"] = {"KHR_materials_unlit"};
+  gltf.j["meshes"] = meshes;
+  gltf.j["nodes"] = nodes;
+  gltf.j["scenes"] = {{{"nodes", {0, 1, 2}}}};
+  gltf.j["scene"] = 0;
+  return gltf;
+}
+
+// Viewers multiply base colours by COLOR_0, which would darken lit surfaces by their light again.
+TEST(Lightmap, TakesTheLightOutOfAKeptGltfFile) {
+  const TempFolder folder;
+  const auto loaded =
+      read_scene(folder.write("scene.glb", three_squares().glb()), {.keep_scene = true}, {});
+  ASSERT_TRUE(loaded.ok()) << loaded.status().message();
+  ExportOptions options = lightmap_options(folder / "w.glb");
+  const auto report = export_world(*loaded, options, {}, {});
+  ASSERT_TRUE(report.ok()) << report.status().message();
+  EXPECT_EQ(report->not_kept, std::vector<std::string>{"4 x values of vertices: alpha"});
+  for (const OracleTriangle& t : GltfOracle(folder / "w.glb").triangles()) {
+    EXPECT_FALSE(t.attributes.contains("_ILLUMINANCE")) << t.node;
+    EXPECT_EQ(t.attributes.contains("COLOR_0"), t.node != "0") << t.node;
+    EXPECT_TRUE(t.attributes.contains("TEXCOORD_1")) << t.node;
+  }
+  // Without a lightmap, all stays.
+  options.charts_only = true;
+  options.exr = false;
+  ASSERT_TRUE(export_world(*loaded, options, {}, {}).ok());
+  const GltfOracle plain(folder / "w.glb");
+  EXPECT_FALSE(plain.document["asset"]["extras"].contains("lightmap"));
+  for (const OracleTriangle& t : plain.triangles()) {
+    EXPECT_EQ(t.attributes.contains("_ILLUMINANCE"), t.node == "1");
+    EXPECT_TRUE(t.attributes.contains("COLOR_0"));
+  }
+}
+
+// A second run adds its own, or replaces the first one with its uvs; it does not leave a name of
+// images that no uvs address.
+TEST(Lightmap, IsNamedOnceInAFileThatIsExportedAgain) {
+  const TempFolder folder;
+  ASSERT_TRUE(export_world(torus_scene(), lightmap_options(folder / "a.glb"), {}, {}).ok());
+  const auto loaded = read_scene(folder / "a.glb", {.keep_scene = true}, {});
+  ASSERT_TRUE(loaded.ok()) << loaded.status().message();
+  EXPECT_FALSE(loaded->scene.lit());
+  const auto map_of = [&](int uv_set) {
+    ExportOptions options = lightmap_options(folder / "b.glb");
+    options.charts_only = true;
+    options.uv_set = uv_set;
+    EXPECT_TRUE(export_world(*loaded, options, {}, {}).ok());
+    return GltfOracle(folder / "b.glb").document["asset"]["extras"].value("lightmap", json());
+  };
+  EXPECT_EQ(map_of(0).value("texCoord", 0), 1);  // the new uvs are the third set
+  EXPECT_TRUE(map_of(1).is_null());
+}
+
+TEST(Lightmap, ThePlanSaysWhatItHolds) {
+  const ExportOptions options = lightmap_options("w.glb");
+  const ExportPlan plan = make_plan(torus_scene().scene, options);
+  EXPECT_TRUE(plan.bake);
+  EXPECT_FALSE(plan.simplify || plan.sample_reflectance);
+  const auto reason = [&](const std::string& stage) {
+    for (const PlanStep& step : plan.steps)
+      if (step.stage == stage) return (step.run ? "run: " : "skip: ") + step.reason;
+    return std::string("none");
+  };
+  EXPECT_EQ(reason("reflectance"), "skip: a lightmap holds the light that falls on surfaces");
+  EXPECT_EQ(reason("simplify"), "skip: the scene is kept");
+  EXPECT_EQ(reason("grouping"), "skip: one page");
+}
+
+}  // namespace
+}  // namespace atlas::test
