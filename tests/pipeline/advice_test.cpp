@@ -321,6 +321,7 @@ TEST(Advice, OnlyNoiseThatTakesManyChartsIsNamed) {
     ExportOptions options;
     options.target = folder / "world.obj";
     options.charts_only = true;
+    options.packing = PackPreset::fast;
     const auto report = export_world(scene, options, {}, {});
     ASSERT_TRUE(report.ok()) << report.status().message();
     const bool strong = noise > 0.4;
