@@ -8,13 +8,13 @@
 #include <atomic>
 #include <cmath>
 #include <cstdlib>
-#include <filesystem>
 
 #include "benchmarks/light_leak/light_leak.h"
 #include "benchmarks/rivals/rivals.h"
 #include "benchmarks/support/callgrind.h"
 #include "benchmarks/support/staged.h"
 #include "libatlas/core/parallel.h"
+#include "tests/scene/temp_folder.h"
 
 namespace atlas::bench {
 namespace {
@@ -217,8 +217,8 @@ TEST(CommandLine, AnUnlitMeshIsNoFailure) {
   Scene scene;
   scene.positions = shape.positions;
   scene.indices = shape.indices;
-  const auto path = std::filesystem::temp_directory_path() /
-                    ("bench_unlit_" + std::to_string(::getpid()) + ".obj");
+  const test::TempFolder folder;
+  const auto path = folder / "unlit.obj";
   ASSERT_TRUE(write_plain_obj(scene, path, false).ok());
   const auto code = [&](const std::string& words) {
     const std::string command = std::string(ATLAS_BENCH_PROGRAM) +
@@ -228,7 +228,6 @@ TEST(CommandLine, AnUnlitMeshIsNoFailure) {
   };
   EXPECT_EQ(code(""), 0);
   EXPECT_EQ(code(" --stages baking"), 1);
-  std::filesystem::remove(path);
 }
 
 // A plane with a straight shadow edge at x = 1/2, which is one mesh cell wide.

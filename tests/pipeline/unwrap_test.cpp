@@ -289,8 +289,9 @@ TEST(Unwrap, ProgressEndsAtOne) {
     last = stage;
     fraction = f;
   };
-  const UnwrapOptions free{.page_size = 256}, square{.page_size = 256, .square = true},
-      several{.pages = 4, .page_size = 256};
+  const UnwrapOptions free{.page_size = 256, .packing = PackPreset::fast},
+      square{.page_size = 256, .square = true},
+      several{.pages = 4, .page_size = 256, .packing = PackPreset::fast};
   for (const MeshView& mesh : {view_of(ring.scene), long_strip}) {
     for (const UnwrapOptions& options : {free, square, several}) {
       last.clear();
