@@ -55,9 +55,11 @@ void describe(CLI::App& app, Arguments& a) {
   app.add_option("--repeats,-r", a.repeats, "the least CPU time counts")
       ->check(CLI::Range(1, 100))
       ->capture_default_str();
-  app.add_option("--threads", a.threads, "one run for each number (default: all cores)")
-      ->check(CLI::Range(1, 1024));
-  app.add_flag("--instructions", a.instructions, "count them with callgrind, on one thread");
+  CLI::Option* threads =
+      app.add_option("--threads", a.threads, "one run for each number (default: all cores)")
+          ->check(CLI::Range(1, 1024));
+  app.add_flag("--instructions", a.instructions, "count them with callgrind, on one thread")
+      ->excludes(threads);
   app.add_option("--atlases", a.pages, "pages of the budget")
       ->check(CLI::Range(1, 1'000'000))
       ->capture_default_str();
@@ -149,7 +151,7 @@ int run_instructions(const Arguments& a, int argc, char** argv) {
     const std::string word = argv[i];
     if (word == "--out" || word == "-o")
       ++i;
-    else if (word != "--instructions")
+    else if (word != "--instructions" && !word.starts_with("--out=") && !word.starts_with("-o"))
       arguments.push_back(word);
   }
   arguments.insert(arguments.end(), {"--threads", "1"});

@@ -51,7 +51,7 @@ int main(int argc, char** argv) {
     return 2;
   }
   if (machine_count(std::vector{*base, *head}) > 1)
-    fmt::print("The files are of different machines or builds: their times cannot be compared.\n");
+    fmt::print("The files are of different machines or builds: their times are not compared.\n");
   const auto found = compare(*base, *head, o);
   constexpr const char* kNames[] = {"quality",      "missing", "failed",
                                     "instructions", "time",    "memory"};

@@ -109,6 +109,7 @@ int main(int argc, char** argv) {
     full.cpu_seconds = row.cpu_seconds;
     full.wall_seconds = row.wall_seconds;
     full.memory_mib = row.memory_mib;
+    full.input_mib = row.input_mib;
     fmt::print("{}\n", line(full));
     results.rows.push_back(std::move(full));
     if (a.picture.empty()) continue;

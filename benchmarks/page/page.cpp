@@ -66,7 +66,8 @@ void noise(const Results& all, Document& page) {
     if (row.cpu_spread > 0 && row.cpu_seconds > 0.05) spreads.push_back(row.cpu_spread);
   std::string text =
       "Times are CPU seconds (user and system, all threads), the least of the repeats. Memory is "
-      "the largest resident set of a process that runs this stage with this setting only; of it, "
+      "the largest resident set of a process that runs this stage with this setting only (light "
+      "leak and shadows: one process for all settings); of it, "
       "input is what it held before: the program, the mesh and what the stage is given. Every "
       "figure is a value in the line of the JSON file that its row names (results/FILE:LINE).";
   if (!spreads.empty()) {

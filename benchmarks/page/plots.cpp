@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cmath>
 #include <map>
 #include <set>
 
@@ -20,8 +21,8 @@ std::string kind_of(const Row& row) {
 
 bool usable(const Row& row) {
   constexpr double kClock = 1e-5;  // CPU seconds; less than a few ticks of the clock is unreliable
-  return row.failure.empty() && !row.values.empty() && row.cpu_seconds >= kClock &&
-         row.threads == 0;
+  return row.failure.empty() && !row.values.empty() && std::isfinite(row.values.front().second) &&
+         row.cpu_seconds >= kClock && row.threads == 0;
 }
 
 constexpr double kUnseenOfPrograms = 1e-5;
@@ -246,7 +247,8 @@ void size_plot(const Results& results, bool time, std::vector<Plot>& plots) {
       continue;
     if (!row.failure.empty() || row.threads > 0) continue;
     if (row.setting != "standard" && row.stage != "baseline") continue;
-    if (row.mesh.find(':') == std::string::npos || row.cpu_seconds <= 0) continue;
+    if (row.mesh.find(':') == std::string::npos) continue;
+    if (row.cpu_seconds <= 0 || row.memory_mib <= 0) continue;
     if (row.stage.find('/') != std::string::npos) continue;
     series[row.stage + ", " + kind_of(row)].push_back(
         {double(row.triangles), time ? row.cpu_seconds : row.memory_mib, ""});
@@ -292,7 +294,8 @@ void leak_plot(const Results& results, std::vector<Plot>& plots) {
       s.name = text;
       s.lines = true;
       s.colour = int(i) + 1;
-      s.points.push_back({row.value("texel_mm"), row.value(value), ""});
+      const PlotPoint point{row.value("texel_mm", NAN), row.value(value, NAN), ""};
+      if (std::isfinite(point.x + point.y)) s.points.push_back(point);
     }
   }
   if (meshes.empty()) return;

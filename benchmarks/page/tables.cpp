@@ -42,6 +42,13 @@ std::vector<std::string> value_names(const Results& all, const std::string& stag
   return {};
 }
 
+// Returns the value of that name, or "-" if the row has none or nothing that is a number: 0 would
+// be the best there is.
+std::string value_text(const Row& row, const std::string& name) {
+  const double value = row.value(name, NAN);
+  return std::isnan(value) ? "-" : figure(value);
+}
+
 std::string verdict(bool met) {
   return met ? "met" : "missed";
 }
@@ -229,13 +236,14 @@ void parts_table(const Results& all, Document& page) {
 }
 
 void export_table(const Results& all, Document& page) {
-  std::vector<std::string> stages, meshes;
+  std::vector<std::string> stages;
+  std::vector<const Row*> meshes;  // the first row of each
   std::map<std::string, std::map<std::string, const Row*>> table;
   for (const Row& row : all.rows) {
     if (!ordinary(row) || row.stage.rfind("export/", 0) != 0) continue;
     const std::string stage = row.stage.substr(7);
     if (std::find(stages.begin(), stages.end(), stage) == stages.end()) stages.push_back(stage);
-    if (!table.count(row.mesh)) meshes.push_back(row.mesh);
+    if (!table.count(row.mesh)) meshes.push_back(&row);
     table[row.mesh].emplace(stage, &row);
   }
   if (meshes.empty()) return;
@@ -243,14 +251,15 @@ void export_table(const Results& all, Document& page) {
   header.insert(header.end(), stages.begin(), stages.end());
   header.push_back("JSON");
   std::vector<Cells> rows;
-  for (const std::string& mesh : meshes) {
-    Cells cells{mesh};
+  for (const Row* first : meshes) {
+    const std::map<std::string, const Row*>& of_mesh = table[first->mesh];
+    Cells cells{first->mesh};
     for (const std::string& stage : stages) {
-      const auto found = table[mesh].find(stage);
-      cells.push_back(
-          found == table[mesh].end() ? "-" : fmt::format("{:.2f}", found->second->cpu_seconds));
+      const auto found = of_mesh.find(stage);
+      cells.push_back(found == of_mesh.end() ? "-"
+                                             : fmt::format("{:.2f}", found->second->cpu_seconds));
     }
-    cells.push_back(table[mesh].begin()->second->source);
+    cells.push_back(first->source);
     rows.push_back(cells);
   }
   page.heading("Where the whole export spends its CPU seconds");
@@ -286,7 +295,7 @@ void rivals_table(const Results& all, Document& page) {
       cells.push_back(fmt::format("{}", row.size_out));
       cells.push_back(fmt::format("{:.2f}", row.cpu_seconds));
       cells.push_back(fmt::format("{:.2f}", row.wall_seconds));
-      for (const std::string& name : names) cells.push_back(figure(row.value(name)));
+      for (const std::string& name : names) cells.push_back(value_text(row, name));
     } else {
       // The CPU time of processes that a timeout ended is not known.
       cells.insert(cells.end(), {row.failure, "", fmt::format("{:.2f}", row.wall_seconds)});
@@ -321,7 +330,7 @@ void stage_table(const Results& all, const std::string& stage, Document& page) {
                    {fmt::format("{}", row.size_in), fmt::format("{}", row.size_out),
                     fmt::format("{:.3g}", row.cpu_seconds), fmt::format("{:.0f}", row.memory_mib),
                     row.input_mib > 0 ? fmt::format("{:.0f}", row.input_mib) : "-"});
-      for (const std::string& name : names) cells.push_back(figure(row.value(name)));
+      for (const std::string& name : names) cells.push_back(value_text(row, name));
     } else {
       cells.push_back(row.failure);
     }

@@ -22,8 +22,9 @@ struct ShadowRunOptions {
 };
 
 // Measures one row of stage "shadows" for each method and interval. The error is the mean of
-// |visibility - that of a classic map of the same light|; the CPU time is the median of a frame.
-// The row's unit names the device. Errors: unsupported (no OpenGL 4.5); those of the renderer.
+// |visibility - that of a classic map of the same light|; the CPU time is the median of a frame;
+// the memory is the most that the process has held so far. Errors: unsupported (no OpenGL 4.5);
+// those of the renderer.
 Result<std::vector<Row>> measure_shadows(const Scene& scene, const std::string& name,
                                          const ShadowRunOptions& options);
 

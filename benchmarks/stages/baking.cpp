@@ -36,7 +36,10 @@ Status bake_all(Staged& staged, const Setting& setting, std::vector<Image8>& pag
 void judge(const Staged& staged, const std::vector<Image8>& pages, Row& row) {
   Result<FidelityMeter> meter =
       FidelityMeter::make(staged.light(), staged.layout->placements, {}, {});
-  if (!meter.ok()) return;
+  if (!meter.ok()) {
+    row.failure = meter.status().message();
+    return;
+  }
   for (std::size_t p = 0; p < pages.size(); ++p) meter->add_page(std::int32_t(p), pages[p]);
   const Fidelity f = meter->result();
   row.values = {{"rms", f.rmse_display}, {"psnr", f.psnr}, {"p95", f.p95}, {"p999", f.p999}};

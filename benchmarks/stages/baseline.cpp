@@ -1,4 +1,7 @@
 // The physical limit for comparison: only reads the mesh and computes its normals.
+#include <fmt/format.h>
+#include <unistd.h>
+
 #include <filesystem>
 
 #include "benchmarks/support/staged.h"
@@ -29,9 +32,11 @@ double sum_of_normals(const Scene& scene) {
 
 void bench_baseline(const StageRun& run) {
   const std::filesystem::path path =
-      std::filesystem::temp_directory_path() / "atlas_bench_baseline.obj";
-  if (const Status s = write_plain_obj(run.staged.scene(), path, true); !s.ok())
+      std::filesystem::temp_directory_path() / fmt::format("atlas_baseline_{}.obj", ::getpid());
+  if (const Status s = write_plain_obj(run.staged.scene(), path, true); !s.ok()) {
+    std::filesystem::remove(path);
     return report_failure(run, "baseline", s);
+  }
   Row row = run.staged.row("baseline", "parse + normals", true);
   row.unit = "triangles read";
   run.measured(row, [&]() -> Status {

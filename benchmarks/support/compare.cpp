@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace atlas::bench {
 namespace {
@@ -167,7 +168,10 @@ Better better_of(const std::string& name) {
 
 std::vector<Regression> compare(const Results& base, const Results& head,
                                 const CompareOptions& options) {
-  Comparison comparison(options);
+  CompareOptions own = options;
+  if (machine_count(std::vector{base, head}) > 1)
+    own.time_relative = std::numeric_limits<double>::infinity();
+  Comparison comparison(own);
   for (const Row& row : base.rows) {
     const Row* other = find_in(head.rows, [&](const Row& r) { return r.key() == row.key(); });
     if (other)

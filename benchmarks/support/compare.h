@@ -29,8 +29,9 @@ Better better_of(const std::string& name);
 
 // Looks at every value that has a better way, and at the numbers of charts, pages and triangles
 // that a stage makes. Returns quality first, then rows that vanished or fail now, then instructions
-// (if both files count them), time and memory. Checks of the stability page that held in the base
-// and do not hold in the head count as quality. New rows are no regression.
+// (if both files count them), time (if both files are of one machine and build) and memory. Checks
+// of the stability page that held in the base and do not hold in the head count as quality. New
+// rows are no regression.
 std::vector<Regression> compare(const Results& base, const Results& head,
                                 const CompareOptions& options);
 

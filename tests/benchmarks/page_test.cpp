@@ -1,6 +1,7 @@
 // Tests the pages of tables with invented numbers.
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <fstream>
 #include <iterator>
 #include <string>
@@ -131,6 +132,39 @@ TEST(Page, LosesNoStageThatIsNamedLikeAGroupOfChecks) {
   for (const char* cited : {"checked.json:4 |", "checked.json:5 |"})
     EXPECT_NE(stable.find(cited), std::string::npos) << cited;
   EXPECT_EQ(stable.find("speed.json"), std::string::npos);
+}
+
+// A stage that comes first need not be the first of the alphabet. A mesh may lack a stage.
+TEST(Page, TheStagesOfAnExportCiteTheirFirstLine) {
+  const TempFolder folder;
+  Results results;
+  for (const char* stage : {"export/exposure", "export/baking"}) {
+    results.rows.push_back(row(1000, 4, 0.5));
+    results.rows.back().stage = stage;
+  }
+  results.rows.push_back(row(2000, 5, 0.5));
+  results.rows.back().stage = "export/baking";
+  const std::string page = written_page(results, folder.path);
+  for (const char* line :
+       {"| mesh | exposure | baking | JSON |", "| sphere:1000 | 4.00 | 4.00 | all.json:4 |",
+        "| sphere:2000 | - | 5.00 | all.json:6 |"})
+    EXPECT_NE(page.find(line), std::string::npos) << line;
+}
+
+// An error of 0 would be the best there is.
+TEST(Page, ValuesThatARowLacksAreNotZero) {
+  const TempFolder folder;
+  Results results;
+  for (const char* stage : {"charts", "unwrap"})
+    for (const bool whole : {true, false}) {
+      results.rows.push_back(row(1000, 4, 0.5));
+      results.rows.back().stage = stage;
+      if (!whole) results.rows.back().values = {{"seam", std::nan("")}};
+    }
+  const std::string page = written_page(results, folder.path);
+  for (const char* cells : {"| 0.5 | 1.0100 | all.json:4 |", "| - | - | all.json:5 |",
+                            "| 0.5 | 1.0100 | all.json:6 |", "| - | - | all.json:7 |"})
+    EXPECT_NE(page.find(cells), std::string::npos) << cells;
 }
 
 // Images are written while the next pages are baked: their wall time alone would show a speed-up

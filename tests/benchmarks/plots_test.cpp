@@ -84,6 +84,24 @@ TEST(Plots, SmallerErrorsAreDrawnAtTheLowestTickWhichSaysSo) {
   EXPECT_EQ(gnuplot_script(plots[0], "x.svg").find("≤"), std::string::npos);
 }
 
+// On a logarithmic axis it would be drawn at the floor, as if it was perfect.
+TEST(Plots, ErrorsThatAreNoNumbersAreNotDrawn) {
+  Results results;
+  for (const double error : {std::nan(""), 1e-3, 1e-2, 1e-1}) {
+    Row made = row(1000, 1 + (error > 0 ? error : 0), error);
+    made.setting = "setting " + std::to_string(error);
+    results.rows.push_back(made);
+  }
+  std::vector<Plot> plots = make_plots(results);
+  ASSERT_EQ(plots.size(), 1u);
+  EXPECT_EQ(plots[0].panels.at(0).floor, 0);
+  EXPECT_EQ(plots[0].panels[0].series.back().points.size(), 3u);
+  for (Row& made : results.rows) made.stage = "unwrap";
+  plots = make_plots(results);
+  ASSERT_EQ(plots.size(), 1u);
+  EXPECT_EQ(plots[0].panels.at(0).title, "no result: setting nan on one mesh");
+}
+
 TEST(Plots, AFrontOfOneSettingIsNotInTheKey) {
   Results results;
   for (const double error : {0.3, 0.2, 0.1}) {

@@ -46,17 +46,21 @@ TEST(Results, MachinesAreCounted) {
   EXPECT_EQ(machine_count(std::vector{some_results(), same, other}), 2u);
 }
 
-TEST(Results, FilesOfOthersAreNamedAsSuch) {
+TEST(Results, BadFilesAreNamed) {
   const TempFolder folder;
-  const auto complaint = [&](const char* text) {
+  EXPECT_EQ(load(folder.path / "none.json").status().code(), ErrorCode::not_found);
+  const auto expect_refused = [&](const char* text, const char* complaint) {
     const fs::path path = folder.path / "other.json";
     std::ofstream(path) << text;
-    return load(path).status().message();
+    const Status status = load(path).status();
+    EXPECT_EQ(status.code(), ErrorCode::bad_input) << text;
+    EXPECT_NE(status.message().find("other.json: "), std::string::npos) << status.message();
+    EXPECT_NE(status.message().find(complaint), std::string::npos) << status.message();
   };
-  for (const char* other : {"{}", "[", "", "[1, 2]", "{\"format\": 3}", "solid cube"})
-    EXPECT_NE(complaint(other).find("not a result file of atlas-bench"), std::string::npos)
-        << other;
-  EXPECT_NE(complaint("{\"format\": \"libatlas-bench-1\"}").find("damaged"), std::string::npos);
+  for (const char* other : {"{}", "{", "[", "[]", "", "[1, 2]", "{\"format\": 3}",
+                            "{\"format\":\"other\"}", "solid cube"})
+    expect_refused(other, "not a result file of atlas-bench");
+  expect_refused("{\"format\": \"libatlas-bench-1\"}", "damaged");
 }
 
 TEST(Results, TargetsAreTriedBeforeARun) {
@@ -92,19 +96,6 @@ TEST(Results, EveryRowAndCheckCitesItsLine) {
     EXPECT_NE(cited(r.source).find("\"mesh\":\"" + r.mesh + "\""), std::string::npos) << r.source;
   for (const Check& c : back->checks)
     EXPECT_NE(cited(c.source).find("\"quantity\":\"" + c.quantity + "\""), std::string::npos);
-}
-
-TEST(Results, BadFilesAreNamed) {
-  const TempFolder folder;
-  EXPECT_EQ(load(folder.path / "none.json").status().code(), ErrorCode::not_found);
-  for (const char* text :
-       {"", "{", "[]", "{\"format\":\"other\"}", "{\"format\":\"libatlas-bench-1\"}"}) {
-    std::ofstream(folder.path / "bad.json") << text;
-    const Result<Results> r = load(folder.path / "bad.json");
-    ASSERT_FALSE(r.ok()) << text;
-    EXPECT_EQ(r.status().code(), ErrorCode::bad_input);
-    EXPECT_NE(r.status().message().find("bad.json"), std::string::npos);
-  }
 }
 
 TEST(Fits, FindTheExponentOfAPowerLaw) {
@@ -169,6 +160,18 @@ TEST(Compare, NeedsBothThresholdsAndPutsQualityFirst) {
   lenient.quality_absolute = 2;
   EXPECT_TRUE(compare(base, head, lenient).empty());
   EXPECT_TRUE(compare(head, base, {}).empty()) << "an improvement is no regression";
+}
+
+TEST(Compare, TimesOfOtherMachinesAreLeftOut) {
+  const Results base = some_results();
+  Results head = base;
+  head.rows[0].cpu_seconds *= 10;
+  head.rows[1].memory_mib *= 10;
+  EXPECT_EQ(compare(base, head, {}).size(), 2u);
+  head.machine.compiler = "another compiler";
+  const std::vector<Regression> found = compare(base, head, {});
+  ASSERT_EQ(found.size(), 1u);
+  EXPECT_EQ(found[0].kind, Regression::memory);
 }
 
 TEST(Compare, SeesMissingFailedAndBrokenRows) {

@@ -339,14 +339,14 @@ TEST(DamagedImages, ArePackedOrRefused) {
 TEST(MadeUpMeshes, AreUnwrapped) {
   std::mt19937 random(3);
   int accepted = 0;
-  for (int round = 0; round < 200; ++round) {
+  for (int round = 0; round < 100; ++round) {
     Input bytes(20 + random() % 500);
     for (std::uint8_t& b : bytes) b = std::uint8_t(random());
     const test::FuzzResult result = test::fuzz_unwrap(bytes);
     ASSERT_EQ(result.fault, "") << "round " << round;
     accepted += result.accepted;
   }
-  EXPECT_GT(accepted, 100);
+  EXPECT_GT(accepted, 50);
 }
 
 }  // namespace

@@ -49,8 +49,14 @@ inline std::string fuzz_layout(std::uint64_t seed) {
       const std::size_t at = static_cast<std::size_t>(noise.in(0, int(present.size()) - 1));
       if (!layout->remove(present[at])) return "an item present was not removed";
       present.erase(present.begin() + static_cast<std::ptrdiff_t>(at));
-    } else if (const Status s = layout->repack({}); !s.ok() && s.code() != ErrorCode::no_solution) {
-      return s.message();
+    } else {
+      std::vector<Placement> before;
+      for (const std::uint32_t id : present) before.push_back(layout->placement(id));
+      const Status s = layout->repack({});
+      if (!s.ok() && s.code() != ErrorCode::no_solution) return s.message();
+      for (std::size_t k = 0; k < present.size(); ++k)
+        if (!s.ok() && !(layout->placement(present[k]) == before[k]))
+          return "a layout changed that could not be packed anew";
     }
     if (layout->size() != present.size()) return "items were lost";
     std::vector<Extent> items;

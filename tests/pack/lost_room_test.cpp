@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -122,22 +123,31 @@ class Spiral {
       return x >= 0 && y >= 0 && x < n && y < n &&
              cells[std::size_t(y) * std::size_t(n) + std::size_t(x)];
     };
-    const auto count_around = [&](const std::vector<char>& cells, int x, int y) {
-      int count = 0;
-      for (int dy = -kHalf; dy <= kHalf; ++dy)
-        for (int dx = -kHalf; dx <= kHalf; ++dx) count += in(cells, x + dx, y + dy);
-      return count;
-    };
     const auto each = [&](auto visit) {
       for (int y = 0; y < n; ++y)
         for (int x = 0; x < n; ++x) visit(x, y, std::size_t(y) * std::size_t(n) + std::size_t(x));
     };
+    // Counts the cells of a square around each, first along rows and then along columns.
+    std::vector<int> in_row(chart.size()), around(chart.size());
+    const auto count_around = [&](const std::vector<char>& cells) {
+      each([&](int x, int y, std::size_t k) {
+        in_row[k] = 0;
+        for (int dx = -kHalf; dx <= kHalf; ++dx) in_row[k] += in(cells, x + dx, y);
+      });
+      each([&](int, int y, std::size_t k) {
+        around[k] = 0;
+        for (int dy = std::max(-kHalf, -y); dy <= std::min(kHalf, n - 1 - y); ++dy)
+          around[k] += in_row[std::size_t(std::ptrdiff_t(k) + std::ptrdiff_t(dy) * n)];
+      });
+    };
     const auto coordinate = [&](int k) { return (k + 0.5 - n / 2.0) * cell; };
     each([&](int x, int y, std::size_t k) { chart[k] = holds({coordinate(x), coordinate(y)}); });
-    each([&](int x, int y, std::size_t k) { near[k] = count_around(chart, x, y) > 0; });
+    count_around(chart);
+    each([&](int, int, std::size_t k) { near[k] = around[k] > 0; });
+    count_around(near);
     int bays = 0;
-    each([&](int x, int y, std::size_t k) {
-      bays += !chart[k] && near[k] && count_around(near, x, y) == kSide * kSide;
+    each([&](int, int, std::size_t k) {
+      bays += !chart[k] && near[k] && around[k] == kSide * kSide;
     });
     return bays * cell * cell;
   }

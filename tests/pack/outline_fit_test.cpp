@@ -1,4 +1,4 @@
-// How fine the cells are when many charts are packed on them.
+// How fine the cells are when many charts are packed on them, and how many layouts are drawn.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -11,8 +11,6 @@
 namespace atlas {
 namespace {
 
-// Coarse cells, as the number of needles alone would suggest, lose two percent of the page around
-// them.
 // The three draws of a page of twenty shapes that stays poorly filled took 1920 layouts before the
 // worse of the starts were given up on the way.
 TEST(OutlineFit, PoorPagesAreDrawnWithFewLayouts) {
@@ -114,6 +112,8 @@ TEST(OutlineFit, WrongShapesAreToldWhereBoxesWouldDo) {
   EXPECT_EQ(fit_boxes_or_outlines(items, o, {}).status().code(), ErrorCode::bad_input);
 }
 
+// Coarse cells, as the number of needles alone would suggest, lose two percent of the page around
+// them.
 TEST(OutlineFit, NeedlesLieOnFineCells) {
   test::Noise noise{8};
   std::vector<std::vector<Vec2d>> needles;

@@ -83,6 +83,32 @@ TEST(Outline, CoveredAreaCountsWhatLiesOnItselfOnce) {
             ErrorCode::bad_input);
 }
 
+// The limits of shapes.h: corners are finite, below 1e9, and three a triangle.
+TEST(Outline, ShapesThatAreNoneAreRefusedByName) {
+  using Shape = std::vector<Vec2d>;
+  const Shape sound{{0, 0}, {5, 0}, {0, 5}};
+  const auto expect = [&](const Shape& shape, ErrorCode code) {
+    const std::vector<ChartShape> shapes{{sound, {}}, {shape, {}}};
+    const Status status = covered_area(shapes, {}).status();
+    EXPECT_EQ(status.code(), code) << status.message();
+    EXPECT_EQ(pack_outlines(shapes, {}, {}).status().code(), code);
+    if (code != ErrorCode::ok) {
+      EXPECT_NE(status.message().find("shape 1 "), std::string::npos) << status.message();
+    }
+  };
+  const double below = std::nextafter(1e9, 0);
+  expect({{below, -below}, {below, 1 - below}, {below - 1, -below}}, ErrorCode::ok);
+  for (const double bad : {1e9, -1e9, double(NAN), double(INFINITY)}) {
+    expect({{0, 0}, {bad, 0}, {0, 1}}, ErrorCode::bad_input);
+    expect({{0, 0}, {1, 0}, {0, bad}}, ErrorCode::bad_input);
+  }
+  for (const std::size_t corners : {1, 2, 4, 5})
+    expect(Shape(corners, {1, 1}), ErrorCode::bad_input);
+  const std::vector<std::uint32_t> two{0, 1};
+  const std::vector<ChartShape> odd{{sound, {}}, {sound, two}};
+  EXPECT_EQ(covered_area(odd, {}).status().code(), ErrorCode::bad_input);
+}
+
 TEST(Outline, RectanglesAreASpecialCase) {
   // Sixteen squares of 30 texels with one texel around each exactly fill a page of 128.
   const std::vector<Vec2d> square{{0, 0}, {30, 0}, {30, 30}, {0, 0}, {30, 30}, {0, 30}};

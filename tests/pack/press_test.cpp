@@ -306,7 +306,7 @@ TEST(Press, ChartsThatCannotBeSettledAreDrawnOnce) {
 // Where pressing fills little of a page, the search over cells may fill half as much again.
 TEST(Press, PagesThatStayEmptyAreAlsoFilledByCells) {
   const test::ChartItems charts = zigzags(12, 3, 4, 0.5);
-  FitSearchOptions o = options_for(charts, 256);
+  FitSearchOptions o = options_for(charts, 128);
   o.free_aspect = false;
   o.rotations = 16;
   const PressedPage pressed = press_outlines(outlines_of(charts.shapes, {}), o, {});

@@ -163,7 +163,7 @@ TEST(PackRects, CancelledWorkOnManyItemsEndsSoon) {
   const std::atomic<bool> stop{true};
   Context context;
   context.cancel = &stop;
-  const std::vector<Extent> items = test::log_normal_rects(300'000, 5);
+  const std::vector<Extent> items = test::log_normal_rects(100'000, 5);
   PackOptions o;
   for (const PackEngine engine : {PackEngine::automatic, PackEngine::skyline_bottom_left,
                                   PackEngine::skyline_min_waste, PackEngine::max_rects})
@@ -174,7 +174,7 @@ TEST(PackRects, CancelledWorkOnManyItemsEndsSoon) {
         o.page = page;
         const double begun = cpu_seconds();
         EXPECT_EQ(pack_rects(items, o, context).status().code(), ErrorCode::cancelled);
-        EXPECT_LT(cpu_seconds() - begun, test::kSlowness) << int(engine) << " " << page.width;
+        EXPECT_LT(cpu_seconds() - begun, 0.1 * test::kSlowness) << int(engine) << " " << page.width;
       }
 }
 

@@ -31,6 +31,7 @@ void export_to(const std::filesystem::path& scene, const std::filesystem::path& 
   options.target = target;
   options.charts_only = true;
   options.keep_scene = keep;
+  options.packing = PackPreset::fast;
   Context context;
   context.threads = threads;
   const auto report = export_world(*loaded, options, {}, context);

@@ -34,6 +34,7 @@ class Exported {
     ExportOptions options;
     options.target = folder_ / "w.gltf";
     options.simplify = simplify;
+    options.packing = PackPreset::fast;
     const auto report = export_world(loaded, options, {}, {});
     EXPECT_TRUE(report.ok()) << report.status().message();
     if (!report.ok()) return;

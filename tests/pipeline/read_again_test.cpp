@@ -25,6 +25,7 @@ TEST(ReadAgain, ChartsOfAPageThatIsNotSquareAreReadAgain) {
   scene.scene.indices = shape.indices;
   ASSERT_TRUE(complete_scene(scene.scene).ok());
   ExportOptions options;
+  options.packing = PackPreset::fast;
   options.charts_only = true;
   for (const char* name : {"a.obj", "a.glb", "a.gltf"}) {
     options.target = folder / name;
@@ -55,6 +56,7 @@ TEST(ReadAgain, ThePageOfAKeptScenesNewUvsIsThatOfTheirSet) {
   scene.scene.indices = shape.indices;
   ASSERT_TRUE(complete_scene(scene.scene).ok());
   ExportOptions options;
+  options.packing = PackPreset::fast;
   options.charts_only = options.keep_scene = true;
   options.target = folder / "plain.glb";
   const auto first = export_world(scene, options, {}, {});
@@ -100,6 +102,7 @@ std::pair<ExportReport, ExportReport> baked_and_kept(const LoadedScene& scene,
 TEST(ReadAgain, ChartsOfBakedPagesAreReadAgain) {
   const TempFolder folder;
   ExportOptions options;
+  options.packing = PackPreset::fast;
   options.simplify = false;
   options.threshold = 0;
   options.texel_metres = 0.01;
@@ -116,6 +119,7 @@ TEST(ReadAgain, ChartsOfBakedPagesAreReadAgain) {
 TEST(ReadAgain, BakedPagesMayDifferInShape) {
   const TempFolder folder;
   ExportOptions options;
+  options.packing = PackPreset::fast;
   options.simplify = false;
   options.threshold = 0;
   options.atlas_size = 64;
@@ -141,6 +145,7 @@ TEST(ReadAgain, ASceneWithoutAreaIsNamed) {
   const auto scene = read_scene(folder / "line.obj", {}, {});
   ASSERT_TRUE(scene.ok()) << scene.status().message();
   ExportOptions options;
+  options.packing = PackPreset::fast;
   options.charts_only = true;
   options.target = folder / "a.obj";
   const auto report = export_world(*scene, options, {}, {});
@@ -155,6 +160,7 @@ TEST(ReadAgain, WorldsBeginWithTheViewOfTheirScene) {
   LoadedScene room = lit_room(4);  // 4 x 3 x 2.5, with z up
   room.scene.origin = {1000, -200, 30};
   ExportOptions options;
+  options.packing = PackPreset::fast;
   options.up = Up::z;
   options.atlas_size = 256;
   const auto view_of = [&](const char* name, const FileView& view) {

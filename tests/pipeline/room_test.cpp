@@ -47,8 +47,7 @@ class Room : public ::testing::Test {
 TEST_F(Room, LooksLikeTheSceneAndTheCoarserMeshToo) {
   const TempFolder folder;
   const Fidelity fine = judge(folder, false), coarse = judge(folder, true);
-  EXPECT_GE(fine.psnr, 45);
-  EXPECT_GE(coarse.psnr, 45);
+  EXPECT_GE(fine.psnr, 51);
   EXPECT_GE(coarse.psnr, fine.psnr - 2);
   EXPECT_LE(coarse.triangles_out, 120000u);
   for (const Fidelity& f : {fine, coarse}) {

@@ -25,6 +25,7 @@ ExportOptions tiles(const TempFolder& folder, std::uint32_t count) {
   options.atlas_size = 512;
   options.plain_pages = count;
   options.udim = true;
+  options.packing = PackPreset::fast;
   return options;
 }
 

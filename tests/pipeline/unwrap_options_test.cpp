@@ -28,7 +28,7 @@ TEST(Unwrap, PagesAreBakedWithMipLevels) {
   const LuminanceSampler sampler(scene.scene, Quantity::illuminance);
   const ToneMapping tone{};
   for (const int levels : {-1, 0, 2, 3}) {
-    UnwrapOptions options{.page_size = 256, .padding = 2};
+    UnwrapOptions options{.page_size = 256, .padding = 2, .packing = PackPreset::fast};
     options.mip_levels = std::max(levels, 0);
     const auto mesh = unwrap_mesh(view_of(scene.scene), options, {});
     ASSERT_TRUE(mesh.ok()) << mesh.status().message();

@@ -289,10 +289,11 @@ TEST(Unwrap, ProgressEndsAtOne) {
     last = stage;
     fraction = f;
   };
-  const UnwrapOptions square{.page_size = 256, .square = true},
-      several{.pages = 4, .page_size = 256};
+  const UnwrapOptions free{.page_size = 256, .packing = PackPreset::fast},
+      square{.page_size = 256, .square = true},
+      several{.pages = 4, .page_size = 256, .packing = PackPreset::fast};
   for (const MeshView& mesh : {view_of(ring.scene), long_strip}) {
-    for (const UnwrapOptions& options : {UnwrapOptions{}, square, several}) {
+    for (const UnwrapOptions& options : {free, square, several}) {
       last.clear();
       fraction = -1;
       ASSERT_TRUE(unwrap_mesh(mesh, options, context).ok());

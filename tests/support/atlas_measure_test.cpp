@@ -13,6 +13,7 @@
 #include <fstream>
 #include <string>
 
+#include "tests/scene/temp_folder.h"
 #include "tests/support/program_output.h"
 #include "tests/support/shapes.h"
 #include "tests/support/shared_data.h"
@@ -156,9 +157,7 @@ TEST(AtlasMeasure, AgreesWithTheSharedMeasuringProgram) {
   const auto shared = shared_data("../tools/atlaseval.cpp");
   if (!shared) GTEST_SKIP() << lacks("a shared program beside it to compare with");
   const fs::path source = *shared;
-  const fs::path folder =
-      fs::temp_directory_path() / ("atlas_measure_" + std::to_string(std::rand()));
-  fs::create_directories(folder);
+  const TempFolder folder;
   const std::string program = (folder / "atlaseval").string(), obj = (folder / "hard.obj").string();
   write_hard_atlas(obj);
   output_of("c++ -O1 -std=c++17 -w -o " + program + " " + source.string());
@@ -188,7 +187,6 @@ TEST(AtlasMeasure, AgreesWithTheSharedMeasuringProgram) {
   same("overlap", double(m.overlap), 0);
   same("bleed", double(m.bleed), 0);
   same("seam", m.seam, 1e-3);
-  fs::remove_all(folder);
 }
 
 }  // namespace

@@ -8,10 +8,10 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
-#include <random>
 #include <string>
 
 #include "libatlas/image/image_io.h"
+#include "tests/scene/temp_folder.h"
 #include "tests/support/program_output.h"
 #include "tests/support/shapes.h"
 #include "tests/support/shared_data.h"
@@ -139,16 +139,12 @@ TEST(Fidelity, AgreesWithTheSharedMeasuringProgram) {
   const auto shared = shared_data("../tools/fidelity.cpp");
   if (!shared) GTEST_SKIP() << lacks("a shared program beside it to compare with");
   const fs::path source = *shared;
-  const fs::path folder =
-      fs::temp_directory_path() / ("fidelity_" + std::to_string(std::random_device{}()));
-  fs::create_directories(folder);
+  const TempFolder folder;
   const std::string program = (folder / "fidelity").string();
   output_of("c++ -O1 -std=c++17 -w -o " + program + " " + source.string() +
             " -lembree3 -lOpenImageIO -lOpenImageIO_Util 2>/dev/null");
-  if (!fs::exists(program)) {
-    fs::remove_all(folder);
+  if (!fs::exists(program))
     GTEST_SKIP() << "the shared program does not compile here (it wants Embree 3)";
-  }
   const WorldMesh room = lit_room();
   WorldMesh world = exported_room(room);
   for (std::uint8_t& v : world.images[2].texels) v = std::uint8_t(v + 40);
@@ -167,7 +163,6 @@ TEST(Fidelity, AgreesWithTheSharedMeasuringProgram) {
   EXPECT_EQ(f.miss, 0);
   EXPECT_EQ(json_field(json, "miss"), 0);
   EXPECT_EQ(f.triangles_in, std::size_t(json_field(json, "tris_in")));
-  fs::remove_all(folder);
 }
 
 }  // namespace

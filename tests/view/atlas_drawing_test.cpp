@@ -92,8 +92,9 @@ UnwrappedMesh unwrapped(const test::Shape& shape, std::int32_t page_size) {
   MeshView view;
   view.positions = shape.positions;
   view.indices = shape.indices;
-  Result<UnwrappedMesh> mesh =
-      unwrap_mesh(view, {.pages = 2, .page_size = page_size, .square = true}, {});
+  const UnwrapOptions options{
+      .pages = 2, .page_size = page_size, .packing = PackPreset::fast, .square = true};
+  Result<UnwrappedMesh> mesh = unwrap_mesh(view, options, {});
   EXPECT_TRUE(mesh.ok()) << mesh.status().message();
   return std::move(mesh.value());
 }

@@ -8,6 +8,7 @@
 #include "libatlas/exporters/world.h"
 #include "libatlas/image/image_io.h"
 #include "libatlas/view/play.h"
+#include "tests/scene/temp_folder.h"
 #include "tests/view/shapes.h"
 
 namespace atlas::testing {
@@ -56,9 +57,8 @@ Colour seen(const ViewScene& view, const Camera& camera, const RenderOptions& op
 }
 
 TEST(OneSided, EachSideOfASheetShowsItsOwnLayer) {
-  const fs::path folder = fs::temp_directory_path() / "atlas-view-one-sided";
-  fs::create_directories(folder);
-  const World world = sheet_world(folder);
+  const test::TempFolder folder;
+  const World world = sheet_world(folder.path());
   RenderOptions options;
   options.width = options.height = 32;
   options.map_resolution = 64;
@@ -84,7 +84,6 @@ TEST(OneSided, EachSideOfASheetShowsItsOwnLayer) {
     }
     EXPECT_EQ(view->caster_indices.size(), 18u);
   }
-  fs::remove_all(folder);
 }
 
 }  // namespace

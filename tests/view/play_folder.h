@@ -4,23 +4,19 @@
 #include <gtest/gtest.h>
 
 #include <filesystem>
-#include <string>
 
 #include "libatlas/view/renderer.h"
+#include "tests/scene/temp_folder.h"
 
 namespace atlas::testing {
 
 // A test with a folder of its own, which is removed at its end.
 class Folder : public ::testing::Test {
+ private:
+  const test::TempFolder folder_;
+
  protected:
-  Folder() {
-    const auto* info = ::testing::UnitTest::GetInstance()->current_test_info();
-    path_ = std::filesystem::temp_directory_path() / (std::string("atlas-view-") + info->name());
-    std::filesystem::remove_all(path_);
-    std::filesystem::create_directories(path_);
-  }
-  ~Folder() override { std::filesystem::remove_all(path_); }
-  std::filesystem::path path_;
+  const std::filesystem::path path_ = folder_.path();
 };
 
 // Returns options for pictures that are quickly drawn.

@@ -1,16 +1,14 @@
 // The command line of atlas-play: every option fills in what it is named after.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <cmath>
-#include <filesystem>
-#include <fstream>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "apps/atlas-play/command_line.h"
+#include "tests/scene/temp_folder.h"
 
 namespace atlas::test {
 namespace {
@@ -242,11 +240,11 @@ TEST(PlayOptions, TheLightLoopsGoesBackOrStops) {
 
 // Worlds of atlas-export say that z points up; the option has the last word.
 TEST(PlayOptions, WorldsSayWhatIsUp) {
-  const auto file = std::filesystem::temp_directory_path() / fmt::format("up_{}.wrl", ::getpid());
-  std::ofstream(file) << "#VRML V2.0 utf8\nWorldInfo { info \"the z axis points up\" }\n";
+  const test::TempFolder folder;
+  const auto file =
+      folder.write("up.wrl", "#VRML V2.0 utf8\nWorldInfo { info \"the z axis points up\" }\n");
   expect_near(parsed({file.string()}).line.render.up, {0, 0, 1}, "as the file says");
   expect_near(parsed({file.string(), "--up", "y"}).line.render.up, {0, 1, 0}, "as the user says");
-  std::filesystem::remove(file);
 }
 
 TEST(PlayOptions, TheCameraIsTwoPoints) {
