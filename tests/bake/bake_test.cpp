@@ -52,11 +52,15 @@ TEST(BakePage, ReproducesALinearRampUpToTheBorder) {
             make_sheet({size.x, size.y, cells, cells, 0.2},
                        [](double u, double v) { return shown(0.1 + 0.3 * u + 0.5 * v); });
         const ChartPlacement p = place(shape.charts, 0, density, {6, 10, rotated});
-        const auto page = bake(shape, {p}, small_page(128));
-        ASSERT_TRUE(page.ok());
-        const WorstErrors worst = ramp_errors(page->display, p, size, {0.1, 0.3, 0.5});
-        EXPECT_LE(worst.inside, 0.75 / 255) << cells << ' ' << rotated << ' ' << density.x;
-        EXPECT_LE(worst.border, 1.2 / 255) << cells << ' ' << rotated << ' ' << density.x;
+        BakeOptions options = small_page(128);
+        for (const int levels : {options.mip_levels, 0}) {
+          options.mip_levels = levels;
+          const auto page = bake(shape, {p}, options);
+          ASSERT_TRUE(page.ok());
+          const WorstErrors worst = ramp_errors(page->display, p, size, {0.1, 0.3, 0.5});
+          EXPECT_LE(worst.inside, 0.75 / 255) << cells << ' ' << rotated << ' ' << density.x;
+          EXPECT_LE(worst.border, 1.2 / 255) << cells << ' ' << rotated << ' ' << density.x;
+        }
       }
 }
 
@@ -324,7 +328,10 @@ TEST(BakePage, RefusesWhatCannotBe) {
   EXPECT_EQ(code([](O& o, P&) { o.shifts = 65; }), ErrorCode::bad_option);
   EXPECT_EQ(code([](O& o, P&) { o.shifts = 64; }), ErrorCode::ok);
   EXPECT_EQ(code([](O& o, P&) { o.mip_levels = 30; }), ErrorCode::bad_option);
-  EXPECT_EQ(code([](O& o, P&) { o.page_width = 0; }), ErrorCode::bad_option);
+  for (const int wrong : {0, -1, 65537}) {
+    EXPECT_EQ(code([=](O& o, P&) { o.page_width = wrong; }), ErrorCode::bad_option);
+    EXPECT_EQ(code([=](O& o, P&) { o.page_height = wrong; }), ErrorCode::bad_option);
+  }
 }
 
 TEST(BakePage, RefusesPlacementsOfSeveralPagesAndChartsOfOtherScenes) {
