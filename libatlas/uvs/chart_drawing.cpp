@@ -101,10 +101,11 @@ std::size_t ChartDrawing::texels_drawn_twice(glm::ivec2 steps) {
   if (corners_.empty()) return 0;
   moved(steps);
   snap();
-  glm::i64vec2 low(INT64_MAX), high(INT64_MIN);
-  for (std::size_t i = 0; i < uvs_.size(); ++i) {
-    low = glm::min(low, at_[i] + glm::min(glm::i64vec2(doubt_[i]), glm::i64vec2(0)));
-    high = glm::max(high, at_[i] + glm::max(glm::i64vec2(doubt_[i]), glm::i64vec2(0)));
+  // A step further, where corners in doubt may be rounded to, is no centre of another texel.
+  glm::i64vec2 low = at_.front(), high = low;
+  for (const glm::i64vec2& at : at_) {
+    low = glm::min(low, at);
+    high = glm::max(high, at);
   }
   box_ = {int(low.x >> kDrawnBits), int(low.y >> kDrawnBits), 0, 0};
   box_.width = int(high.x >> kDrawnBits) + 1 - box_.x;

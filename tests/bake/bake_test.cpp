@@ -52,11 +52,15 @@ TEST(BakePage, ReproducesALinearRampUpToTheBorder) {
             make_sheet({size.x, size.y, cells, cells, 0.2},
                        [](double u, double v) { return shown(0.1 + 0.3 * u + 0.5 * v); });
         const ChartPlacement p = place(shape.charts, 0, density, {6, 10, rotated});
-        const auto page = bake(shape, {p}, small_page(128));
-        ASSERT_TRUE(page.ok());
-        const WorstErrors worst = ramp_errors(page->display, p, size, {0.1, 0.3, 0.5});
-        EXPECT_LE(worst.inside, 0.75 / 255) << cells << ' ' << rotated << ' ' << density.x;
-        EXPECT_LE(worst.border, 1.2 / 255) << cells << ' ' << rotated << ' ' << density.x;
+        BakeOptions options = small_page(128);
+        for (const int levels : {options.mip_levels, 0}) {
+          options.mip_levels = levels;
+          const auto page = bake(shape, {p}, options);
+          ASSERT_TRUE(page.ok());
+          const WorstErrors worst = ramp_errors(page->display, p, size, {0.1, 0.3, 0.5});
+          EXPECT_LE(worst.inside, 0.75 / 255) << cells << ' ' << rotated << ' ' << density.x;
+          EXPECT_LE(worst.border, 1.2 / 255) << cells << ' ' << rotated << ' ' << density.x;
+        }
       }
 }
 
@@ -171,11 +175,15 @@ TEST(BakePage, GivesSceneLinearValuesOnRequest) {
 
 // Values that are not light may be negative. Light may not, whatever the fit would do at edges.
 TEST(BakePage, SceneLinearValuesAreNegativeOnlyWhereTheSignalIs) {
-  const auto least_of = [](float base) {
-    const LitShape shape = make_sheet({1, 1, 20, 20}, [&](double u, double) {
+  const auto least_of = [](float base, int negative = -1) {
+    LitShape shape = make_sheet({1, 1, 20, 20}, [&](double u, double) {
       const float v = base + (u < 0.5 ? 0.0f : 2.0f);
       return Vec3f{v, v, v};
     });
+    if (negative >= 0) {  // one channel at one vertex
+      Vec3f& e = shape.scene.illumination.back();
+      (negative == 0 ? e.x : negative == 1 ? e.y : e.z) = -1e-3f;
+    }
     const ChartPlacement p = place(shape.charts, 0, {40, 40}, {4, 4});
     BakeOptions options = small_page(64);
     options.linear = true;
@@ -187,6 +195,58 @@ TEST(BakePage, SceneLinearValuesAreNegativeOnlyWhereTheSignalIs) {
   };
   EXPECT_LT(least_of(-1.5f), -1.5f);  // as far below the step as above it
   EXPECT_EQ(least_of(0), 0);
+  for (int channel = 0; channel < 3; ++channel) EXPECT_LT(least_of(0, channel), -0.01f) << channel;
+}
+
+// A striped texture is read in the size of the samples: stripes of many texels are seen, and those
+// finer than samples become their mean, without beating against them.
+TEST(BakePage, ReadsTexturesInTheSizeOfItsSamples) {
+  Image8 stripes(64, 64, 3);
+  for (int y = 0; y < 64; ++y)
+    for (int x = 0; x < 64; ++x) std::fill_n(stripes.at(x, y), 3, std::uint8_t(x % 2 ? 255 : 0));
+  const auto extremes = [&](float repeats, BakeMethod method) {
+    LitShape shape = make_sheet({1, 1, 1, 1}, [](double, double) {
+      return Vec3f{0.8f, 0.8f, 0.8f};
+    });
+    add_texture(shape, stripes, {repeats, repeats});
+    const ChartPlacement p = place(shape.charts, 0, {96, 96}, {4, 4});
+    BakeOptions options = small_page(128, method);
+    options.linear = true;
+    const auto page = bake(shape, {p}, options);
+    EXPECT_TRUE(page.ok());
+    float low = 1, high = 0;
+    for (int y = 20; y < 80; ++y)
+      for (int x = 20; x < 80; ++x) {
+        low = std::min(low, *page->linear.at(x, y));
+        high = std::max(high, *page->linear.at(x, y));
+      }
+    return std::pair(low, high);
+  };
+  for (const BakeMethod method : {BakeMethod::least_squares, BakeMethod::average}) {
+    const auto wide = extremes(0.125f, method);  // 12 texels a stripe
+    EXPECT_LT(wide.first, 0.05f);
+    EXPECT_GT(wide.second, 0.75f);
+    const auto fine = extremes(96 * 4.3f / 32, method);  // 4.3 pairs of stripes a texel
+    EXPECT_NEAR(fine.first, 0.4, 0.02);
+    EXPECT_NEAR(fine.second, 0.4, 0.02);
+  }
+}
+
+// A box that is narrower than its chart cuts off the chart's right part and leaves the left one.
+TEST(BakePage, ABoxMayCutOffAPartOfItsChart) {
+  const LitShape shape =
+      make_sheet({1, 1, 9, 9}, [](double u, double v) { return shown(0.1 + 0.4 * u + 0.4 * v); });
+  for (const BakeMethod method : {BakeMethod::least_squares, BakeMethod::average}) {
+    ChartPlacement p = place(shape.charts, 0, {40, 40}, {4, 4});
+    const auto whole = bake(shape, {p}, small_page(64, method));
+    p.width -= 23;
+    p.height -= 11;
+    const auto cut = bake(shape, {p}, small_page(64, method));
+    ASSERT_TRUE(whole.ok() && cut.ok());
+    for (int y = p.y; y < p.y + p.height - 3; ++y)
+      for (int x = p.x; x < p.x + p.width - 3; ++x)
+        ASSERT_NEAR(cut->display.at(x, y)[0], whole->display.at(x, y)[0], 1) << x << ' ' << y;
+  }
 }
 
 LitShape many_charts(std::vector<ChartPlacement>& placements) {
@@ -268,7 +328,10 @@ TEST(BakePage, RefusesWhatCannotBe) {
   EXPECT_EQ(code([](O& o, P&) { o.shifts = 65; }), ErrorCode::bad_option);
   EXPECT_EQ(code([](O& o, P&) { o.shifts = 64; }), ErrorCode::ok);
   EXPECT_EQ(code([](O& o, P&) { o.mip_levels = 30; }), ErrorCode::bad_option);
-  EXPECT_EQ(code([](O& o, P&) { o.page_width = 0; }), ErrorCode::bad_option);
+  for (const int wrong : {0, -1, 65537}) {
+    EXPECT_EQ(code([=](O& o, P&) { o.page_width = wrong; }), ErrorCode::bad_option);
+    EXPECT_EQ(code([=](O& o, P&) { o.page_height = wrong; }), ErrorCode::bad_option);
+  }
 }
 
 TEST(BakePage, RefusesPlacementsOfSeveralPagesAndChartsOfOtherScenes) {

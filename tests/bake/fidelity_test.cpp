@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <atomic>
 #include <cmath>
 #include <memory>
@@ -90,6 +91,53 @@ TEST(Fidelity, MeasuresAKnownErrorExactly) {
   EXPECT_NEAR(f.psnr, f.psnr_channel[1] + 10 * std::log10(3.0), 0.05);
   EXPECT_NEAR(f.p95, 20 / 255.0, 0.004);
   EXPECT_NEAR(f.rmse_display, 20 / 255.0 / std::sqrt(3.0), 0.001);
+}
+
+// Texels that count up along both axes reproduce light that rises evenly, in look-ups at any place
+// between four of them.
+TEST(Fidelity, LooksUpBetweenFourTexels) {
+  const LitShape shape = make_sheet(
+      {1, 1, 200, 200}, [](double u, double v) { return shown((20 + 50 * u + 100 * v) / 255); });
+  const LuminanceSampler sampler(shape.scene, Quantity::illuminance);
+  const std::vector<ChartPlacement> placements{place(shape.charts, 0, {50, 50}, {4, 4})};
+  const Vec2d corner = page_texel(placements[0], {0, 0});
+  Image8 page(64, 64, 3);
+  for (int y = 0; y < 64; ++y)
+    for (int x = 0; x < 64; ++x)
+      std::fill_n(
+          page.at(x, y), 3,
+          std::uint8_t(20 + std::lround(x + 0.5 - corner.x) + 2 * std::lround(y + 0.5 - corner.y)));
+  // A corner between texels lies half a texel from their centres, by which the codes are rounded.
+  const Vec2d rest{std::lround(0.5 - corner.x) - (0.5 - corner.x),
+                   std::lround(0.5 - corner.y) - (0.5 - corner.y)};
+  const double off = std::fabs(rest.x + 2 * rest.y) / 255;
+  FidelityMeter meter = meter_of({sampler, shape.charts, kPlain}, placements, {});
+  meter.add_page(0, page);
+  const Fidelity f = meter.result();
+  EXPECT_EQ(f.lit, 100000u);
+  EXPECT_NEAR(f.maximum, off, 2e-4);
+  EXPECT_NEAR(f.rmse_display, off, 1e-4);
+}
+
+// The error rises evenly from none at the lower edge to 100 codes at the upper one.
+TEST(Fidelity, TellsWhichErrorsFewSamplesExceed) {
+  const LitShape shape = make_sheet({1, 1, 1, 1}, [](double, double) { return shown(0.4); });
+  const LuminanceSampler sampler(shape.scene, Quantity::illuminance);
+  const std::vector<ChartPlacement> placements{place(shape.charts, 0, {100, 100}, {4, 4})};
+  const double bottom = page_texel(placements[0], {0, 0}).y;
+  Image8 page(128, 128, 3);
+  for (int y = 0; y < 128; ++y)
+    for (int x = 0; x < 128; ++x)
+      std::fill_n(page.at(x, y), 3,
+                  std::uint8_t(std::clamp(102 + std::lround(y + 0.5 - bottom), 0L, 255L)));
+  FidelityMeter meter = meter_of({sampler, shape.charts, kPlain}, placements, {});
+  meter.add_page(0, page);
+  const Fidelity f = meter.result();
+  constexpr double kHalfCode = 0.5 / 255 + 1e-4;  // texels are centred half a texel off the edge
+  EXPECT_NEAR(f.p95, 95 / 255.0, kHalfCode);
+  EXPECT_NEAR(f.p999, 99.9 / 255, kHalfCode);
+  EXPECT_NEAR(f.p999 - f.p95, 4.9 / 255, 1e-4);
+  EXPECT_NEAR(f.maximum - f.p999, 0.1 / 255, 1e-4);
 }
 
 // Pages show negative light black, so it has the error of light that is 0.
@@ -231,6 +279,37 @@ TEST(Fidelity, LeavesClippedSamplesOutOfTheSceneUnits) {
   EXPECT_LT(f.clipped, f.lit);
   EXPECT_LT(f.rmse, 0.02);  // clipping would show as tenths
   EXPECT_GT(f.psnr, 45);
+}
+
+TEST(Fidelity, AnyChannelBeyondWhiteIsClipped) {
+  for (int channel = 0; channel < 3; ++channel) {
+    const LitShape shape = make_sheet({1, 1, 1, 1}, [channel](double, double) {
+      Vec3f light{0.3f, 0.3f, 0.3f};
+      (channel == 0 ? light.x : channel == 1 ? light.y : light.z) = 2;
+      return light;
+    });
+    const LuminanceSampler sampler(shape.scene, Quantity::illuminance);
+    const ChartLight light{sampler, shape.charts, kPlain};
+    const std::vector<ChartPlacement> placements{place(shape.charts, 0, {20, 20}, {4, 4})};
+    FidelityMeter meter = meter_of(light, placements, {});
+    meter.add_page(0, bake_page(light, placements, small_page(32), Context{})->display);
+    const Fidelity f = meter.result();
+    EXPECT_EQ(f.lit, 100000u) << channel;
+    EXPECT_EQ(f.clipped, f.lit) << channel;
+    EXPECT_EQ(f.rmse, 0) << channel;
+  }
+}
+
+TEST(Fidelity, PagesThatAreNotColourImagesCountAsNone) {
+  const auto s = two_pages();
+  FidelityMeter meter = meter_of(s->light(), s->placements, {});
+  Image8 cut = bake_pages(*s)[0];
+  cut.texels.pop_back();
+  for (const Image8& page : {Image8(), Image8(128, 128, 1), Image8(128, 128, 2), cut}) {
+    meter.add_page(0, page);
+    EXPECT_EQ(meter.result().unplaced, 100000u - meter.result().unlit - meter.result().lit);
+    EXPECT_EQ(meter.result().lit + meter.result().unlit, 0u);
+  }
 }
 
 TEST(Fidelity, OfNothingIsNothing) {

@@ -221,6 +221,25 @@ TEST(Gutter, ContestedTexelsAreCountedAndTold) {
   EXPECT_EQ(lines.size(), 1u);
 }
 
+// Charts beside the contested texels, in the same rows, are not named.
+TEST(Gutter, TheWarningNamesTheChartsThatClaimTheTexel) {
+  std::vector<ChartPlacement> placements;
+  const LitShape shape = crowded(false, placements);
+  placements.resize(7);
+  for (int i = 0; i < 7; ++i) placements[i].x = 4 + 22 * i - (i > 4 ? 6 : 0);
+  for (ChartPlacement& p : placements) turn_in_box(p, false);
+  const LuminanceSampler sampler(shape.scene, Quantity::illuminance);
+  BakeOptions options = small_page(160);
+  options.mip_levels = 2;
+  std::vector<std::string> lines;
+  Context context;
+  context.warn = [&](std::string_view line) { lines.emplace_back(line); };
+  ASSERT_TRUE(bake_page({sampler, shape.charts, kPlain}, placements, options, context).ok());
+  ASSERT_EQ(lines.size(), 1u);
+  // Chart 5 begins 16 texels after chart 4, whose box of 16 has gutters of 2 on both sides.
+  EXPECT_NE(lines[0].find("the first at (106, 2) to 4 and 5:"), std::string::npos) << lines[0];
+}
+
 TEST(Gutter, BoxesKeepWithinThemselves) {
   std::vector<ChartPlacement> placements;
   const LitShape shape = tiled(2, 256, placements);

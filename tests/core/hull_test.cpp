@@ -22,6 +22,36 @@ TEST(Hull, ASegmentEndsAtItsEnds) {
   EXPECT_DOUBLE_EQ(squared_distance_to_segment({4, 2}, a, a), 9);
 }
 
+TEST(Hull, DistancesAreThoseOfTriangles) {
+  EXPECT_DOUBLE_EQ(distance({1, 2}, {4, 6}), 5);
+  EXPECT_DOUBLE_EQ(distance({1, -2}, {-4, 10}), 13);
+  EXPECT_EQ(distance({3, 7}, {3, 7}), 0);
+}
+
+// All pairs of segments on a small grid. Those that cross have a common point, which is on neither
+// of their ends: its places along both, by Cramer's rule, are strictly between 0 and 1.
+TEST(Hull, SegmentsCrossIfTheyHaveAPointBetweenTheirEnds) {
+  constexpr int kSide = 4, kPoints = kSide * kSide;
+  const auto point = [](int i) { return Vec2d{double(i % kSide), double(i / kSide)}; };
+  int crossing = 0;
+  for (int i = 0; i < kPoints * kPoints * kPoints * kPoints; ++i) {
+    const Vec2d a = point(i % kPoints), b = point(i / kPoints % kPoints),
+                c = point(i / kPoints / kPoints % kPoints),
+                d = point(i / kPoints / kPoints / kPoints);
+    const Vec2d u{b.x - a.x, b.y - a.y}, v{d.x - c.x, d.y - c.y}, w{c.x - a.x, c.y - a.y};
+    const double det = u.x * v.y - u.y * v.x;
+    const double s = det != 0 ? (w.x * v.y - w.y * v.x) / det : 2,
+                 t = det != 0 ? (w.x * u.y - w.y * u.x) / det : 2;
+    if (s > 0 && s < 1 && t > 0 && t < 1) {
+      ++crossing;
+      ASSERT_TRUE(cross_each_other(a, b, c, d)) << i;
+    } else if (s < 0 || s > 1 || t < 0 || t > 1) {  // parallel or apart
+      ASSERT_FALSE(cross_each_other(a, b, c, d)) << i;
+    }
+  }
+  EXPECT_GT(crossing, 1000);
+}
+
 TEST(Hull, OfFewPoints) {
   std::vector<Vec2d> none, hull, three{{0, 0}, {2, 0}, {0, 2}}, line{{0, 0}, {1, 1}, {2, 2}};
   EXPECT_EQ(hull_area(none, hull), 0);
@@ -104,6 +134,18 @@ TEST(Hull, TheSmallestRectangleOfFewPoints) {
   EXPECT_EQ(box_area({{1, 2}, {3, 4}}), 0);
   EXPECT_EQ(box_area({{1, 2}, {1, 2}, {1, 2}}), 0);
   EXPECT_DOUBLE_EQ(box_area({{0, 0}, {2, 0}, {2, 0}, {0, 2}}), 4);
+}
+
+TEST(Hull, RepeatedCornersDoNotChangeTheSmallestRectangle) {
+  std::mt19937 random(2);
+  std::normal_distribution<double> spread;
+  for (int k = 0; k < 200; ++k) {
+    std::vector<Vec2d> points, hull, repeated;
+    for (int i = 0; i < 3 + k % 20; ++i) points.push_back({spread(random), spread(random)});
+    hull_area(points, hull);
+    for (const Vec2d& p : hull) repeated.insert(repeated.end(), 1 + random() % 3, p);
+    EXPECT_EQ(box_area(repeated), box_area(hull)) << k;
+  }
 }
 
 TEST(Hull, TheSmallestRectangleOfManyCornersIsFoundFast) {

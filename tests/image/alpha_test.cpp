@@ -207,6 +207,29 @@ TEST(Alpha, NamesMayHoldQuestionMarks) {
   EXPECT_NE(cut.status().message().find("no?.png"), std::string::npos) << cut.status().message();
 }
 
+// Three flags and the name of a chunk change in an animation of a lossy and a lossless frame, and
+// nothing else. Chunks of an odd length are padded.
+TEST(Alpha, OfWebpIsHiddenInEveryChunkThatTellsIt) {
+  const auto chunk = [](const std::string& name, const std::string& bytes) {
+    std::string text = name;
+    for (int k = 0; k < 4; ++k) text += char(bytes.size() >> (8 * k) & 0xff);
+    return text + bytes + std::string(bytes.size() % 2, '\0');
+  };
+  const auto file = [&](char flags, const std::string& alpha, char lossless) {
+    const std::string frame(16, '\x5a');
+    const std::string body =
+        chunk("VP8X", flags + std::string(9, '\x7f')) + chunk("ANIM", std::string(6, '\x33')) +
+        chunk("ANMF",
+              frame + chunk(alpha, "\xff\xff\xff") + chunk("VP8 ", std::string(5, '\xff'))) +
+        chunk("ANMF",
+              frame + chunk("VP8L", "\x2f\xff\xff\xff" + std::string(1, lossless) + "\xff\xff")) +
+        chunk("EXIF", std::string(31, '\xff'));
+    const std::string text = chunk("RIFF", "WEBP" + body);
+    return std::vector<std::uint8_t>(text.begin(), text.end());
+  };
+  EXPECT_EQ(without_webp_alpha(file('\x3e', "ALPH", '\xff')), file('\x2e', "aLPH", '\xef'));
+}
+
 // A file that ends anywhere, and chunks that claim to be longer than the file.
 TEST(Alpha, HidingItStaysWithinTheFile) {
   for (const std::string_view hex : {kLossless, kLossy, kAnimated}) {

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -51,6 +52,8 @@ TEST(ImageClaim, OfAJpegFileIsThatOfItsFrame) {
   for (const char marker : {'\xc4', '\xc8', '\xcc', '\xdb', '\xe1', '\xbf'})
     before.push_back(segment(marker, decoy));
   before.push_back(std::string("\xff\x00", 2));
+  // Segments hold their length at least, even if they say that they are shorter.
+  for (const std::uint32_t length : {0u, 1u, 2u}) before.push_back("\xff\xe1" + big(length, 2));
   for (const std::string& lead : before)
     for (const char marker : {'\xc0', '\xc1', '\xc2', '\xc3', '\xc5', '\xcb', '\xcf'})
       expect_claim(start + lead + frame(marker), {700, 300, 3}, 2 + lead.size() + 10);
@@ -100,6 +103,46 @@ TEST(ImageClaim, IsBelievedUpToTheLimits) {
   EXPECT_TRUE(check_claim({16384, 16384, 4, 4, kPackedByte}, 1 << 30, "a").ok());
   EXPECT_EQ(check_claim({16384, 16385, 4, 4, kPackedByte}, 1 << 30, "a").code(),
             ErrorCode::unsupported);
+}
+
+TEST(ImageClaim, RunsInABmpFileNeedAPalette) {
+  const auto lacks = [](int bits, int compression, char header = 40) {
+    std::string head = "BM" + std::string(12, '\1') + header + std::string(39, '\0');
+    head[28] = char(bits);
+    head[30] = char(compression);
+    return bmp_lacks_palette(std::vector<std::uint8_t>(head.begin(), head.end()));
+  };
+  for (const int bits : {1, 4, 8, 16, 24, 32}) {
+    for (const int compression : {0, 1, 2, 3}) {
+      const bool runs = compression == 1 || compression == 2;
+      EXPECT_EQ(lacks(bits, compression), runs && bits > 8) << bits << ' ' << compression;
+      EXPECT_FALSE(lacks(bits, compression, 12)) << "the oldest header has no compression";
+    }
+  }
+}
+
+// Headers of OpenEXR files. Of a single part, what follows its header are texels.
+TEST(ImageClaim, AttributesOfAnExrFileLieWithinIt) {
+  const auto attribute = [](const std::string& name, std::uint32_t length,
+                            const std::string& value) {
+    return name + std::string("\0string\0", 8) + little(length, 4) + value;
+  };
+  const auto overclaims = [](bool several, const std::string& rest) {
+    const std::string head = std::string("\x76\x2f\x31\x01\x02", 5) + (several ? '\x10' : '\0') +
+                             std::string(2, '\0') + rest;
+    return exr_overclaims(std::vector<std::uint8_t>(head.begin(), head.end()), head.size());
+  };
+  const std::string end(1, '\0'), value(300, 'v');
+  const std::string sound = attribute("owner", 300, value), wrong = attribute("owner", 9999, value);
+  for (const bool several : {false, true}) {
+    EXPECT_FALSE(overclaims(several, sound + sound + end + end + wrong)) << several;
+    EXPECT_TRUE(overclaims(several, wrong)) << several;
+    EXPECT_TRUE(overclaims(several, sound + sound + wrong + end)) << several;
+    EXPECT_EQ(overclaims(several, sound + end + wrong + end + end), several);
+    EXPECT_EQ(overclaims(several, sound + end + sound + end + wrong), several);
+    const std::string holding = attribute("owner", std::uint32_t(wrong.size()), wrong);
+    EXPECT_FALSE(overclaims(several, holding + end + end)) << "what an attribute holds is none";
+  }
 }
 
 TEST(ImageKind, IsToldByTheFirstBytes) {

@@ -2,7 +2,9 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <numeric>
 #include <tuple>
+#include <vector>
 
 #include "libatlas/core/clock.h"
 #include "libatlas/pack/rectangles/engines.h"
@@ -83,6 +85,69 @@ TEST(Skyline, WasteIsUsedAgain) {
   EXPECT_EQ(put({6, 2}), (Rect{4, 0, 6, 2}));
   EXPECT_EQ(put({8, 4}), (Rect{0, 6, 8, 4}));  // covers a free 4 x 4 area above the second item
   EXPECT_EQ(put({4, 4}), (Rect{4, 2, 4, 4}));
+}
+
+// The first place over a skyline of column heights by a rule: all left ends at which the height
+// changes are tried.
+Spot place_over(const std::vector<int>& heights, Extent item, PlaceRule rule, int page_height) {
+  Spot best;
+  best.first = -1;
+  const int width = int(heights.size());
+  for (int x = 0; x + item.width <= width; ++x) {
+    if (x > 0 && heights[x] == heights[x - 1]) continue;
+    const auto window = heights.begin() + x;
+    const int y = *std::max_element(window, window + item.width);
+    if (y + item.height > page_height) continue;
+    Spot s;
+    s.rect = {x, y, item.width, item.height};
+    const int waste = y * item.width - std::accumulate(window, window + item.width, 0);
+    s.first = rule == PlaceRule::min_waste ? waste : y + item.height;
+    s.second = rule == PlaceRule::min_waste ? y + item.height : waste;
+    s.third = x;
+    if (best.first < 0 || s.better_than(best)) best = s;
+  }
+  return best;
+}
+
+TEST(Skyline, FindsTheBestPlaceByItsRule) {
+  constexpr Extent kPage{40, 60};
+  test::Noise noise{17};
+  int over = 0;
+  for (int round = 0; round < 300; ++round) {
+    const PlaceRule rule = round % 2 ? PlaceRule::min_waste : PlaceRule::bottom_left;
+    const bool turns = round % 4 / 2;
+    Skyline page(kPage);
+    std::vector<int> heights(kPage.width, 0);
+    for (;;) {
+      const Extent item{noise.in(1, 12), noise.in(1, 12)};
+      Spot found;
+      const bool fits = page.find(item, turns, rule, found);
+      const Spot upright = place_over(heights, item, rule, kPage.height);
+      const Spot turned = place_over(heights, {item.height, item.width}, rule, kPage.height);
+      if (!fits) {
+        EXPECT_LT(upright.first, 0);
+        EXPECT_TRUE(!turns || turned.first < 0);
+        break;
+      }
+      page.place(found.rect);
+      const auto window = heights.begin() + found.rect.x;
+      const bool wasted =
+          found.rect.y < *std::max_element(window, window + found.rect.width);  // below it
+      if (wasted) {
+        for (int k = 0; k < found.rect.width; ++k)
+          ASSERT_LE(found.rect.top(), window[k]) << "what is wasted lies below the skyline";
+        continue;
+      }
+      const bool turn =
+          turns && turned.first >= 0 && (upright.first < 0 || turned.better_than(upright));
+      ASSERT_EQ(found.rect, (turn ? turned : upright).rect) << round;
+      ASSERT_EQ(found.first, (turn ? turned : upright).first);
+      std::fill_n(window, found.rect.width, found.rect.top());
+      ++over;
+    }
+    EXPECT_EQ(page.used_height(), *std::max_element(heights.begin(), heights.end()));
+  }
+  EXPECT_GT(over, 5000);
 }
 
 // Cuts a strip into items by guillotine cuts, so that a layout without waste exists.

@@ -4,10 +4,14 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <cstdio>
+#include <random>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "libatlas/scene/reader.h"
 #include "tests/scene/temp_folder.h"
@@ -86,6 +90,84 @@ TEST(Frame, ExactScenesKeepTheirOrigin) {
       load(folder, sheet({3, 4, 5}, "v 0 0 0\nv 64 0 0\nv 0 64 0\nf -3 -2 -1\n"));
   EXPECT_EQ(stray.scene.origin, Vec3d{});
   EXPECT_TRUE(stray.defects.empty());
+}
+
+// Triangles about as large as `scale`, a third of which lie far away along the axis. The first one
+// is larger than all others. One edge of each far triangle lies along the axis.
+struct FarTriangles {
+  std::vector<Vec3d> positions;
+  std::vector<std::uint32_t> indices;
+
+  FarTriangles(int axis, double scale) {
+    std::mt19937 random(axis);
+    std::uniform_real_distribution<double> in(0, 1);
+    for (int t = 0; t < 901; ++t) {
+      // Far away, floats are 8 apart.
+      const double size = t == 0 ? 1e6 : t % 3 == 0 ? 20 * in(random) : 1 + in(random);
+      for (int k = 0; k < 3; ++k) {
+        double p[3];
+        for (double& v : p) v = 100 + 30 * in(random);
+        if (t % 3 == 0) p[axis] += 1e8;
+        if (k > 0) {
+          const Vec3d& first = positions[3 * t];
+          const double from[3] = {first.x / scale, first.y / scale, first.z / scale};
+          const bool along = t % 3 == 0 && k == 1;  // the edge that rounding may close
+          for (int i = 0; i < 3; ++i) {
+            const double off = in(random);
+            p[i] = from[i] + (along && i != axis ? 0 : size * (off - 0.5));
+          }
+        }
+        indices.push_back(std::uint32_t(positions.size()));
+        positions.push_back({scale * p[0], scale * p[1], scale * p[2]});
+      }
+    }
+  }
+};
+
+std::size_t count_moved(const FarTriangles& t, const Frame& frame, double limit) {
+  std::size_t count = 0;
+  for (const Vec3d& p : t.positions) {
+    const Vec3f s = frame.stored(p);
+    count += std::abs(p.x - frame.origin.x - s.x) > limit ||
+             std::abs(p.y - frame.origin.y - s.y) > limit ||
+             std::abs(p.z - frame.origin.z - s.z) > limit;
+  }
+  return count;
+}
+
+// Along every axis and in every unit, and with all edges sorted for their median.
+TEST(Frame, LossesAreThoseOfEachVertexAndTriangle) {
+  for (int axis = 0; axis < 3; ++axis) {
+    std::size_t moved = 0, closed = 0;
+    for (const double scale : {0x1p-30, 1.0, 0x1p30}) {
+      const FarTriangles t(axis, scale);
+      const FilePositions file{t.positions, t.indices, std::vector<bool>(t.positions.size(), true)};
+      const Frame frame{{}, diagonal_of_used(file)};
+      std::vector<double> edges;
+      std::size_t want_closed = 0;
+      for (std::size_t i = 0; i < t.positions.size(); i += 3) {
+        double longest = 0;
+        bool closes = false;
+        for (std::size_t k = 0; k < 3; ++k) {
+          const Vec3d &a = t.positions[i + k], &b = t.positions[i + (k + 1) % 3];
+          longest = std::max(longest, std::hypot(a.x - b.x, a.y - b.y, a.z - b.z));
+          closes = closes || frame.stored(a) == frame.stored(b);
+        }
+        edges.push_back(longest);
+        want_closed += closes;
+      }
+      std::sort(edges.begin(), edges.end());
+      const RoundingLoss loss = rounding_loss(file, frame);
+      EXPECT_EQ(loss.moved.size(), count_moved(t, frame, 1e-3 * edges[edges.size() / 2]));
+      EXPECT_EQ(loss.closed.size(), want_closed);
+      EXPECT_GT(loss.moved.size(), 100u);
+      EXPECT_GT(loss.closed.size(), 10u);
+      EXPECT_TRUE(moved == 0 || loss.moved.size() == moved) << scale;
+      EXPECT_TRUE(closed == 0 || loss.closed.size() == closed) << scale;
+      moved = loss.moved.size();
+      closed = loss.closed.size();
+    }
+  }
 }
 
 // Two equal parts so far apart that no origin serves both.

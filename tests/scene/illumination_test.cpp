@@ -103,6 +103,29 @@ TEST(Illumination, AnotherOrderOfTheSameVerticesIsTold) {
   }
 }
 
+TEST(Illumination, AnotherOrderIsToldWhereverTheMeshLies) {
+  const TempFolder folder;
+  for (int axis = 0; axis < 3; ++axis) {
+    // A triangle in a plane across the axis, ten times as far from the origin as it is large.
+    const auto vertex = [&](int corner, const char* light) {
+      std::string text[3] = {"10", "10", "10"};
+      if (corner > 0) text[(axis + corner) % 3] = "11";
+      return "v " + text[0] + " " + text[1] + " " + text[2] + light + "\n";
+    };
+    const auto mesh =
+        folder.write("mesh.obj", vertex(0, "") + vertex(1, "") + vertex(2, "") + "f 1 2 3\n");
+    for (const bool swapped : {false, true}) {
+      ReadOptions options;
+      options.illumination_file =
+          folder.write("light.obj", vertex(0, " 1 1 1") + vertex(swapped ? 2 : 1, " 2 2 2") +
+                                        vertex(swapped ? 1 : 2, " 3 3 3"));
+      EXPECT_EQ(load(mesh, options).defects.count(DefectKind::illumination_elsewhere),
+                swapped ? 2u : 0u)
+          << axis;
+    }
+  }
+}
+
 // Defects of the second file's light are reported with that file's name. The first file's light is
 // not used.
 TEST(Illumination, DefectsAreTheSecondFiles) {

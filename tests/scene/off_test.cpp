@@ -90,6 +90,29 @@ TEST(Off, ScalesOfColours) {
   EXPECT_EQ(first("51 0 1 1.0", "1 1 1 .5"), (Vec3f{0.2f, 0, float(1 / 255.0)}));
 }
 
+TEST(Off, VerticesHaveAllTheirNumbers) {
+  const auto taken = [](const std::string& header, int numbers) {
+    std::string vertex;
+    for (int i = 0; i < numbers; ++i) vertex += "1 ";
+    const auto loaded = load(header + "\n3 1 0\n" + vertex + "\n" + vertex + "\n" + vertex +
+                             "\n3 0 1 2\n# " + std::string(40, '-') + "\n");
+    if (!loaded.ok()) {
+      EXPECT_NE(loaded.status().message().find("it has " + std::to_string(numbers)),
+                std::string::npos)
+          << loaded.status().message();
+    }
+    return loaded.ok();
+  };
+  // More numbers than a header without colours explains are ignored.
+  for (int n = 1; n < 15; ++n) {
+    EXPECT_EQ(taken("OFF", n), n >= 3) << n;
+    EXPECT_EQ(taken("NOFF", n), n >= 6) << n;
+    EXPECT_EQ(taken("STOFF", n), n >= 5) << n;
+    EXPECT_EQ(taken("COFF", n), n == 6 || n == 7) << n;
+    EXPECT_EQ(taken("STCNOFF", n), n == 11 || n == 12) << n;
+  }
+}
+
 TEST(Off, DefectsAreCounted) {
   const auto loaded = load(
       "OFF\n4 5 0\n0 0 0 9 9\n2 0 0\nnan 3 0\n0 3 0\n3 0 1 3\n3 0 1 2\n3 0 1 4\n3 0 1 -1\n2 0 1\n"

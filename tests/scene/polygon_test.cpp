@@ -197,7 +197,8 @@ TEST(Polygon, CornersNextToALineAreCutExactly) {
 }
 
 // A convex polygon with corners that hang on its sides, turned by `turn` and rounded to floats.
-std::vector<Vec3d> hung(int sides, const std::vector<int>& hanging, double turn) {
+// With a power above 1, the hanging corners are nearer to the beginning of their side.
+std::vector<Vec3d> hung(int sides, const std::vector<int>& hanging, double turn, double power = 1) {
   std::vector<Vec3d> corners;
   const auto at = [&](int side) {
     const double a = 2 * M_PI * side / sides + turn;
@@ -207,7 +208,7 @@ std::vector<Vec3d> hung(int sides, const std::vector<int>& hanging, double turn)
     const Vec2d from = at(side), to = at(side + 1);
     const int parts = hanging[std::size_t(side) % hanging.size()] + 1;
     for (int k = 0; k < parts; ++k) {
-      const double t = double(k) / parts;
+      const double t = std::pow(double(k) / parts, power);
       corners.push_back({double(float(from.x + t * (to.x - from.x))),
                          double(float(from.y + t * (to.y - from.y))), 0});
     }
@@ -244,6 +245,17 @@ TEST(Polygon, HangingCornersGetTrianglesWithArea) {
          {std::vector<int>{1}, {0, 1}, {2, 0, 0}, {1, 0, 3, 0, 2}, {5}, {0, 0, 4}}) {
       for (const double turn : {0.0, M_PI / 4, M_PI / 2, 0.3, 1.1, 2.2, 4.7})
         check_hanging(hung(sides, hanging, turn), 1e-4);
+    }
+  }
+}
+
+TEST(Polygon, HangingCornersMayBeNearTheEndsOfTheirSides) {
+  for (int sides = 3; sides <= 7; ++sides) {
+    for (const std::vector<int>& hanging : {std::vector<int>{1}, {0, 1}, {2, 0, 0}}) {
+      for (double turn = 0; turn < 6; turn += 0.17) {
+        for (const double power : {0.01, 7.0})
+          check_hanging(hung(sides, hanging, turn, power), 2e-6);
+      }
     }
   }
 }

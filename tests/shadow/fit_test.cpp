@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
@@ -123,6 +124,29 @@ TEST(Fit, AMovingCameraMovesTheMapByWholeTexels) {
       EXPECT_TRUE(v.z >= 0 && v.z <= 1);
     }
   }
+}
+
+// Snapping moves a map by at most half a texel from the middle of its view.
+TEST(Fit, ASnappedMapIsWithinHalfATexelOfItsView) {
+  const Box3 box{{-50, 0, -50}, {50, 10, 50}};
+  std::mt19937 rng(10);
+  std::uniform_real_distribution<double> in(-20, 20);
+  double farthest = 0;
+  for (int i = 0; i < 200; ++i) {
+    const Vec3d at{in(rng), 1, in(rng)};
+    LightFitOptions o;
+    o.view = true;
+    for (int c = 0; c < 8; ++c)
+      o.view_corners[c] = {at.x + (c & 1 ? 4 : -4), at.y + (c & 2 ? 3 : -3),
+                           at.z + (c & 4 ? 5 : -5)};
+    const Vec3d m = transform_point(fit_light(random_direction(rng), box, o)->to_texture, at);
+    for (const double part : {m.x, m.y}) {
+      const double off = std::abs(part - 0.5) * o.resolution;
+      EXPECT_LE(off, 0.5 + 1e-6);
+      farthest = std::max(farthest, off);
+    }
+  }
+  EXPECT_GT(farthest, 0.45);  // it does snap
 }
 
 // Zooming changes the map's size in few steps of less than a tenth each, and the map is never too

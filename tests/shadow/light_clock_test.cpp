@@ -110,6 +110,17 @@ TEST(LightClock, ThePredictionForgetsOneSlowFrameAndLearnsLastingOnes) {
   EXPECT_NEAR(predicted(150, 2), 2, 0.01);
 }
 
+TEST(LightClock, TheLimitMayBeAnyPartOfADegree) {
+  for (const double limit : {1e-6, 0.25, 1.0, 1.5}) {
+    LightClock clock({limit});
+    for (int f = 1; f <= 3; ++f) {
+      clock.advance(1, 90);
+      EXPECT_DOUBLE_EQ(clock.travelled(), f * limit);
+    }
+    EXPECT_DOUBLE_EQ(clock.ahead(2), 5 * limit);
+  }
+}
+
 TEST(LightClock, AStepOfExactlyTheLimitIsNotSlowed) {
   LightClock clock({2});
   clock.advance(0.25, 8);

@@ -198,6 +198,11 @@ TEST(LightPath, SaysWhatIsWrong) {
   EXPECT_NE(LightPath::make(o).status().message().find("opposite"), std::string::npos);
   o.directions = {{1, 0, 0}, {0, 0, 0}};
   EXPECT_NE(LightPath::make(o).status().message().find("direction 2"), std::string::npos);
+  o.directions = {{0, 0, 0}, {1, 0, 0}};
+  EXPECT_NE(LightPath::make(o).status().message().find("direction 1 "), std::string::npos);
+  o.directions = {{0, std::nan(""), 0}};
+  o.kind = PathKind::fixed;
+  EXPECT_NE(LightPath::make(o).status().message().find("direction 1 "), std::string::npos);
   LightPathOptions sun;
   sun.sun.latitude = 80;
   sun.sun.day_of_year = 355;

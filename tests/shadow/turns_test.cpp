@@ -56,6 +56,33 @@ LightPath path_of(PathKind kind, PathEnd end, std::vector<Vec3d> directions) {
   return *LightPath::make({kind, end, std::move(directions), {}});
 }
 
+// A light tells a direction; the length of the vector is nothing. The path has corners, turns back
+// and rests.
+TEST(ScheduleTurns, TheLengthOfDirectionsDoesNotMatter) {
+  const LightPath path = path_of(PathKind::keys, PathEnd::back,
+                                 {circled(0), circled(40), {0.5, 0.5, 1}, {-1, 0.2, 0.7}});
+  const auto at = [&](int frame) { return path.direction(0.75 * std::max(0, frame - 30)); };
+  const auto stretched = [&](int frame) {
+    const Vec3d d = at(frame);
+    const double length = std::exp2(frame * 7 % 40 - 20);
+    return Vec3d{d.x * length, d.y * length, d.z * length};
+  };
+  for (const double by_degrees : {0.0, 5.0}) {
+    ScheduleOptions o;
+    o.interval_degrees = by_degrees;
+    KeySchedule plain(o), other(o);
+    for (int f = 0; f < 400; ++f) {
+      const FramePlan a = plain.next(at(f), [&](int n) { return at(f + n); });
+      const FramePlan b = other.next(stretched(f), [&](int n) { return stretched(f + n); });
+      ASSERT_EQ(a.t, b.t) << f;
+      ASSERT_EQ(a.refreshed, b.refreshed) << f;
+      ASSERT_EQ(a.work.size(), b.work.size()) << f;
+      ASSERT_LT(degrees_between(a.to_direction, b.to_direction), 1e-5) << f;
+    }
+    EXPECT_EQ(plain.passes(), other.passes());
+  }
+}
+
 // Wherever between two frames the light turns back, the shadows go along to within a step.
 TEST(ScheduleTurns, ALightThatTurnsBackIsFollowedToTheTurn) {
   const LightPath path = path_of(PathKind::arc, PathEnd::back, {circled(0), circled(37)});

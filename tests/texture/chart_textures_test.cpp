@@ -202,6 +202,8 @@ TEST(ChartTextures, RefuseOptionsOutOfRange) {
   EXPECT_TRUE(refused([](TextureOptions& o) { o.max_side = 4; }));
   EXPECT_TRUE(refused([](TextureOptions& o) { o.texture_sampling = 0; }));
   EXPECT_TRUE(refused([](TextureOptions& o) { o.texture_sampling = INFINITY; }));
+  for (const double no_light : {-1.0, double(NAN), double(INFINITY)})
+    EXPECT_TRUE(refused([&](TextureOptions& o) { o.brightest = no_light; })) << no_light;
   EXPECT_TRUE(refused([](TextureOptions& o) { o.texel = 1e-310; }));  // 1 / texel is infinite
 }
 

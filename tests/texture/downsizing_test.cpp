@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <random>
 #include <vector>
 
@@ -53,14 +54,20 @@ double definition(const SampledChart& in, SampledChart& out) {
   return worst;
 }
 
-// Returns the largest error of the interpolated texture, over covered texels. Only covered texels
-// of the small one are interpolated.
-double interpolation_error(const SampledChart& full, const SampledChart& small, int halvings) {
-  double worst = 0;
+// Errors of the interpolated texture over covered texels.
+struct Errors {
+  double worst = 0, square_sum = 0;
+  std::int64_t covered = 0;
+};
+
+// Only covered texels of the small texture are interpolated.
+Errors interpolation_errors(const SampledChart& full, const SampledChart& small, int halvings) {
+  Errors errors;
   for (int y = 0; y < full.height; ++y)
     for (int x = 0; x < full.width; ++x) {
       const auto& wanted = full.texels[std::size_t(y) * full.width + x];
       if (!(wanted.weight > 0)) continue;
+      ++errors.covered;
       const double u = std::ldexp(x + 0.5, -halvings) - 0.5;
       const double v = std::ldexp(y + 0.5, -halvings) - 0.5;
       double sum[3] = {0, 0, 0}, weights = 0;
@@ -82,10 +89,13 @@ double interpolation_error(const SampledChart& full, const SampledChart& small, 
         }
       }
       if (weights == 0) continue;
-      for (int k = 0; k < 3; ++k)
-        worst = std::max(worst, std::fabs(sum[k] / weights - wanted.rgb[k]));
+      for (int k = 0; k < 3; ++k) {
+        const double error = std::fabs(sum[k] / weights - wanted.rgb[k]);
+        errors.worst = std::max(errors.worst, error);
+        errors.square_sum += error * error;
+      }
     }
-  return worst;
+  return errors;
 }
 
 TEST(Downsizing, FollowsTheDefinition) {
@@ -110,7 +120,7 @@ TEST(Downsizing, FollowsTheDefinition) {
       levels.push_back(next);
     }
     while (levels.size() > 1) {
-      const double error = interpolation_error(full, levels.back(), int(levels.size()) - 1);
+      const double error = interpolation_errors(full, levels.back(), int(levels.size()) - 1).worst;
       close = close || std::fabs(error - 2 * o.threshold) < 1e-6;
       if (error <= 2 * o.threshold) break;
       levels.pop_back();
@@ -124,6 +134,10 @@ TEST(Downsizing, FollowsTheDefinition) {
     ASSERT_EQ(d.halvings, want);
     ASSERT_EQ(d.width, current.width);
     ASSERT_EQ(d.height, current.height);
+    const Errors errors = interpolation_errors(full, current, want);
+    ASSERT_EQ(d.covered, errors.covered);
+    ASSERT_NEAR(d.max_error, want > 0 ? errors.worst : 0, 1e-6);
+    ASSERT_NEAR(d.square_sum, want > 0 ? errors.square_sum : 0, 1e-4 * errors.square_sum + 1e-9);
     ++counts[std::min(want, 3)];
   }
   for (const int c : counts) EXPECT_GT(c, 5);

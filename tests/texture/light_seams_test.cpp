@@ -53,6 +53,59 @@ TEST(LightSeams, LeaveFacesTogetherThatAreFewTexelsWide) {
   EXPECT_EQ(leg.seams(0.0101).length, 0);
 }
 
+// Counts with the mean of the jumps at both ends of an edge.
+TEST(LightSeams, AreAtEdgesWithAJumpAtOneEnd) {
+  const LightAt rising = [](Vec3f p) { return p.y > 0.5 ? 0.8 : 0.3; };
+  EXPECT_NEAR(corner(1, rising, constant(0.3)).seams().length, 1, 1e-6);
+  EXPECT_NEAR(corner(1, constant(0.3), rising).seams().length, 1, 1e-6);
+  const LightAt hardly = [](Vec3f p) { return p.y > 0.5 ? 0.33 : 0.3; };
+  EXPECT_TRUE(corner(1, hardly, constant(0.3)).seams().edges.empty());
+}
+
+// A floor of strips one beside the other, of other light each, and a wall at its side x = 1.
+Sheets strips_and_wall(int strips, Vec3f wall_from) {
+  Sheets sheets;
+  const auto wide = 1 / float(strips);
+  for (int i = 0; i < strips; ++i)
+    sheets.add({wide * float(i), 0, 0}, {wide, 0, 0}, {0, 1, 0}, 1, constant(i % 2 ? 0.8 : 0.2));
+  sheets.add(wall_from, {0, 0, 1}, {0, 1, 0}, 1, constant(0.5));
+  return sheets;
+}
+
+// Strips of light on a floor belong to one face, whose width is that of the floor.
+TEST(LightSeams, OfAFaceDoNotDependOnItsStripes) {
+  EXPECT_NEAR(strips_and_wall(5, {1, 0, 0}).seams(0.1).length, 1, 1e-6);
+  EXPECT_NEAR(strips_and_wall(1, {1, 0, 0}).seams(0.1).length, 1, 1e-6);
+  EXPECT_EQ(strips_and_wall(5, {1, 0, 0}).seams(0.51).length, 0);
+}
+
+// Where light is constant per triangle, nothing tells what is the line below a wall.
+TEST(LightSeams, AreNotBelowWallsOnThinStripes) {
+  EXPECT_NEAR(strips_and_wall(10, {0.5, -0.05f, -0.3f}).seams(0.01).length, 1, 1e-6);
+  EXPECT_EQ(strips_and_wall(50, {0.5, -0.05f, -0.3f}).seams(0.006).length, 0);
+}
+
+// A partition on a floor of two layers. Each layer continues beyond it with the same light; only
+// the other layer's is another.
+TEST(LightSeams, ALayerOfAFloorIsContinuedByItself) {
+  Sheets sheets;
+  for (const float x : {0.0f, 1.0f}) {
+    sheets.add({x, 0, 0}, {1, 0, 0}, {0, 1, 0}, 4, constant(0.8))
+        .add({x, 0, 0}, {0, 1, 0}, {1, 0, 0}, 4, constant(0.2));
+  }
+  sheets.add({1, 0, 0}, {0, 0, 1}, {0, 1, 0}, 4, constant(0.5));
+  const LightSeams seams = sheets.seams();
+  const Scene& scene = sheets.loaded().scene;
+  ASSERT_EQ(seams.edges.size(), scene.indices.size());
+  for (std::uint32_t h = 0; h < 4 * 32 * 3; ++h) {
+    const std::uint32_t next = h % 3 == 2 ? h - 2 : h + 1;
+    const Vec3f a = scene.positions[scene.indices[h]], b = scene.positions[scene.indices[next]];
+    if (a.x == 1 && b.x == 1) {
+      EXPECT_EQ(seams.edges[h], 0) << h;
+    }
+  }
+}
+
 // Floor, floor beyond and a wall between the two: the floors continue each other.
 TEST(LightSeams, OfThreeSheetsAtAnEdgeThoseThatContinueEachOtherStayTogether) {
   const Sheets sheets = Sheets()

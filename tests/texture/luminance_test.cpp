@@ -4,7 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <random>
+#include <vector>
 
 #include "libatlas/core/srgb.h"
 #include "tests/texture/lit_shapes.h"
@@ -117,6 +119,35 @@ TEST(LuminanceSampler, KnowsHowFineATextureIsOnTheSurface) {
   const LuminanceSampler sampler(shape.scene, Quantity::illuminance);
   for (std::uint32_t t = 0; t < shape.scene.triangle_count(); ++t)
     EXPECT_NEAR(sampler.texture_density(t), std::sqrt(32.0 * 64.0), 1e-3);
+}
+
+TEST(LuminanceSampler, TexturesHaveNoFinenessOnTrianglesWithoutArea) {
+  LitShape shape = make_sheet({4, 2, 2, 2}, [](double, double) { return Vec3f{1, 1, 1}; });
+  add_texture(shape, noise_image(64, 16, 3), {0.5f, 4});
+  LitShape squeezed = shape;
+  for (Vec3f& p : squeezed.scene.positions) p.y = 0;
+  for (Vec2f& p : shape.scene.texcoords) p.y = 0;
+  for (const LitShape& s : {shape, squeezed}) {
+    const LuminanceSampler sampler(s.scene, Quantity::illuminance);
+    for (std::uint32_t t = 0; t < s.scene.triangle_count(); ++t)
+      EXPECT_EQ(sampler.texture_density(t), 0) << t;
+  }
+}
+
+TEST(LuminanceSampler, FindsTheCornerWhoseLightIsNoNumber) {
+  LitShape shape = make_sheet({1, 1, 1, 1}, [](double, double) { return Vec3f{1, 1, 1}; });
+  std::vector<Vec3f>& light = shape.scene.illumination;
+  for (int corner = 0; corner < 3; ++corner) {
+    for (int channel = 0; channel < 3; ++channel) {
+      light.assign(light.size(), {1, 1, 1});
+      Vec3f& there = light[shape.scene.indices[corner]];
+      (channel == 0 ? there.x : channel == 1 ? there.y : there.z) = channel == 1 ? NAN : -1e37f;
+      const LuminanceSampler sampler(shape.scene, Quantity::illuminance);
+      EXPECT_EQ(sampler.bad_corner(0), corner) << channel;
+    }
+  }
+  light.assign(light.size(), {1e36f, -1e36f, 0});
+  EXPECT_EQ(LuminanceSampler(shape.scene, Quantity::illuminance).bad_corner(0), 3);
 }
 
 TEST(LuminanceSampler, ReadsCoarserLevelsForWiderSamples) {

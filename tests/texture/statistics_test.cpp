@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstdint>
 
 #include "libatlas/texture/tone.h"
 #include "tests/texture/lit_shapes.h"
@@ -105,6 +106,33 @@ TEST(Statistics, CountWhatIsNoLuminance) {
   EXPECT_LE(s.percentile99, 1);
   EXPECT_NEAR(s.lit_area, 0.25, 0.002);
   EXPECT_NEAR(s.unlit_area, 0.75, 0.002);
+}
+
+TEST(Statistics, AnyNegativeChannelCounts) {
+  for (int channel = 0; channel < 3; ++channel) {
+    const LitShape shape = make_sheet({1, 1, 1, 1}, [channel](double, double) {
+      Vec3f light{1, 1, 1};
+      (channel == 0 ? light.x : channel == 1 ? light.y : light.z) = -1;
+      return light;
+    });
+    EXPECT_EQ(measure(shape).negative, std::uint64_t{1} << 18) << channel;
+  }
+}
+
+// Light that rises evenly from 0 to 1000 from one side of a sheet to the other.
+TEST(Statistics, PercentilesAreSharesOfTheArea) {
+  const LitShape shape = make_sheet({1, 1, 1, 1}, [](double u, double) {
+    const auto v = static_cast<float>(1000 * u);
+    return Vec3f{v, v, v};
+  });
+  const LuminanceStatistics s = measure(shape);
+  EXPECT_NEAR(s.median, 500, 1);
+  EXPECT_NEAR(s.percentile99, 990, 0.2);
+  EXPECT_NEAR(s.percentile999, 999, 0.1);
+  EXPECT_NEAR(s.maximum, 1000, 0.1);
+  EXPECT_LT(s.percentile999, s.maximum - 0.5);
+  EXPECT_NEAR(s.minimum_log, std::log(10), 0.02);
+  EXPECT_NEAR(s.maximum_log, std::log(990), 0.001);
 }
 
 // The luma of the smallest red is 0 in single precision.

@@ -147,6 +147,22 @@ TEST(ToneMapping, PhotoreceptorsFollowThePublishedModel) {
   }
 }
 
+// Light of one luminance has no range, and the least contrast that is chosen automatically.
+TEST(ToneMapping, EvenLightHasTheLeastContrast) {
+  LuminanceStatistics s = statistics(1);
+  s.minimum_log = s.maximum_log = std::log(0.3);
+  ToneOptions options;
+  options.op = ToneOperator::reinhard_devlin;
+  const ToneMapping automatic = *make_tone_mapping(options, s);
+  options.contrast = 0.3;
+  const ToneMapping least = *make_tone_mapping(options, s);
+  for (const float light : {0.01f, 0.3f, 2.0f}) {
+    const Vec3f a = automatic.map({light, light, light}), b = least.map({light, light, light});
+    EXPECT_GT(a.x, 0);
+    EXPECT_NEAR(a.x, b.x, 1e-6);
+  }
+}
+
 TEST(ToneMapping, DoesNotDependOnTheUnitOfLuminance) {
   for (const ToneOperator op : kAll) {
     const ToneMapping one = mapping(op, 1);

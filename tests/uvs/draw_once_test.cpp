@@ -185,6 +185,42 @@ TEST(DrawOnce, NeighboursOfNeighboursThatMovedStayApart) {
   EXPECT_EQ(again.uvs, drawn.uvs);
 }
 
+// A chart that cannot be moved comes before one on another page that is.
+TEST(DrawOnce, EachChartIsMovedForItself) {
+  unsigned seed = 50;
+  while (kite_between_walls(seed, 2.1).draw(1).moves.empty()) ++seed;
+  int held = 0;
+  for (unsigned first = 0; first < 100 && held < 3; ++first) {
+    Drawn both = kite_between_walls(first, 1.2), second = kite_between_walls(seed, 2.1);
+    {
+      Drawn alone = both;
+      const DrawnTwice drawn = alone.draw(1);
+      if (drawn.before == 0 || !drawn.moves.empty()) continue;
+    }
+    ++held;
+    const auto charts = std::uint32_t(both.set.charts.size());
+    const std::size_t before = both.uvs.size();
+    both.pages.push_back(both.pages[0]);
+    for (const Chart& chart : second.set.charts) {
+      std::vector<Vec2d> texels;
+      for (const Vec2f uv : std::span(second.uvs).subspan(chart.first_uv, chart.uv_count))
+        texels.push_back({kPage * double(uv.x), kPage * double(uv.y)});
+      std::vector<std::uint32_t> corners;
+      for (std::uint32_t i = 0; i < 3 * chart.triangle_count; ++i)
+        corners.push_back(second.set.triangle_uv[3 * chart.first_triangle + i] - chart.first_uv);
+      both.add(texels, corners);
+      both.placements.back().page = 1;
+    }
+    const DrawnTwice together = both.draw(1);
+    const DrawnTwice alone = second.draw(1);
+    ASSERT_EQ(together.moves.size(), 1u);
+    EXPECT_EQ(together.moves[0].chart, charts + alone.moves[0].chart);
+    EXPECT_TRUE(std::equal(second.uvs.begin(), second.uvs.end(),
+                           both.uvs.begin() + std::ptrdiff_t(before)));
+  }
+  EXPECT_GE(held, 1);
+}
+
 TEST(DrawOnce, StaysWhereEveryMoveWouldTouchNeighbours) {
   for (unsigned seed = 0; seed < 60; ++seed) {
     // Closer than gutters, so none may come even closer.
@@ -221,8 +257,8 @@ TEST(DrawOnce, ChartsStayATexelOffThePagesEdge) {
   EXPECT_GT(moved, 5u);
 }
 
-// Adds a sheet with vertical sides, of slanted rows with a sliver on each.
-void add_sheet(Drawn& drawn, double left, double right, std::mt19937& random) {
+// Adds a sheet with vertical sides, or such that lean, of slanted rows with a sliver on each.
+void add_sheet(Drawn& drawn, double left, double right, std::mt19937& random, double lean = 0) {
   constexpr std::uint32_t kRows = 30;
   std::uniform_real_distribution<double> unit(0, 1);
   std::vector<Vec2d> texels;
@@ -236,6 +272,7 @@ void add_sheet(Drawn& drawn, double left, double right, std::mt19937& random) {
     corners.insert(corners.end(), {a, c, b});
     if (row < kRows) corners.insert(corners.end(), {a, b, d, b, c, e, b, e, d});
   }
+  for (Vec2d& t : texels) t.x += lean * (t.y - 100);
   drawn.add(texels, corners);
 }
 
@@ -253,6 +290,22 @@ TEST(DrawOnce, NeighboursThatMovedAreSeenWhereTheyAre) {
     EXPECT_EQ(drawn.measured().bleed, 0u) << seed;
   }
   EXPECT_GT(both, 20);
+}
+
+// Look-ups along leaning sides read texels further out along both axes.
+TEST(DrawOnce, LeaningNeighboursStayApart) {
+  for (const double lean : {0.3, -0.2}) {
+    int moved = 0;
+    for (unsigned seed = 0; seed < 15; ++seed) {
+      std::mt19937 random(seed);
+      Drawn drawn;
+      add_sheet(drawn, 160, 400.498, random, lean);
+      add_sheet(drawn, 400.498 + 2.02 * (1 + std::fabs(lean)), 650, random, lean);
+      moved += int(drawn.draw(1).moves.size());
+      EXPECT_EQ(drawn.measured().bleed, 0u) << seed << ' ' << lean;
+    }
+    EXPECT_GT(moved, 5) << lean;
+  }
 }
 
 // Where a page's side is no power of two, a move rounds uvs anew, which may close slivers that are

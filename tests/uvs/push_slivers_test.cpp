@@ -67,6 +67,47 @@ TEST(PushSlivers, FansTakeWorkInProportionToTheirTriangles) {
   }
 }
 
+// A fan of `spokes` around the first uv. Beside its first and its middle spoke, a uv near the hub
+// makes a sliver with that spoke: one without height, and one that is just open.
+FlatMesh fan_with_two_slivers(std::uint32_t spokes, double open_by) {
+  FlatMesh mesh;
+  mesh.uvs.push_back({0.5, 0.5});
+  for (std::uint32_t i = 0; i < spokes; ++i) {
+    const double angle = 2 * M_PI * i / spokes;
+    const double y = 2 * i == spokes ? 0 : std::sin(angle);
+    mesh.uvs.push_back({0.5 + 0.3 * std::cos(angle), 0.5 + 0.3 * y});
+  }
+  mesh.uvs.push_back({0.501, 0.5});
+  mesh.uvs.push_back({0.499, 0.5 - open_by * 0x1p-24});
+  for (std::uint32_t i = 0; i < spokes; ++i) {
+    const std::uint32_t p = 1 + i, next = 1 + (i + 1) % spokes;
+    if (2 * i % spokes != 0) {
+      mesh.corners.insert(mesh.corners.end(), {0, p, next});
+      continue;
+    }
+    const std::uint32_t q = 1 + spokes + (i > 0);
+    mesh.corners.insert(mesh.corners.end(), {0, p, q, p, next, q, 0, q, next});
+  }
+  return mesh;
+}
+
+// Pushing the first sliver open moves the uv in the middle, by half of what a sliver needs. This
+// closes the second one, at a uv of few triangles and at a hub of many.
+TEST(PushSlivers, WhatAPushClosesIsPushedInTurn) {
+  for (const std::uint32_t spokes : {20u, 80u, 400u}) {
+    for (const double open_by : {3.2, 4.0, 100.0}) {
+      SCOPED_TRACE(::testing::Message() << spokes << ' ' << open_by);
+      const FlatMesh mesh = fan_with_two_slivers(spokes, open_by);
+      Input input(mesh);
+      ASSERT_EQ(count_thin(mesh, input.uvs), 1u);
+      const PushWork work =
+          push_slivers({mesh.corners, input.corners_at, input.exact}, mesh.uvs, 1, input.uvs);
+      EXPECT_EQ(count_thin(mesh, input.uvs), 0u);
+      EXPECT_GE(work.pushes, 1u);
+    }
+  }
+}
+
 // Where a whole fan is smaller than the step between floats, each push closes all of its triangles.
 TEST(PushSlivers, TinyFansTakeLimitedWork) {
   constexpr std::uint32_t kCount = 9000;

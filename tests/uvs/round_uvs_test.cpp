@@ -74,6 +74,27 @@ TEST(RoundUvs, SliversStayOpen) {
   EXPECT_GT(turned, 100u) << "the test is too easy";
 }
 
+// A uv on the diagonal of a square, at various places and angles.
+TEST(RoundUvs, ASliverByItselfMovesByAFewSteps) {
+  for (double angle = 0; angle < 1.6; angle += 0.1) {
+    for (const double along : {0.001, 0.1, 0.5, 0.83}) {
+      FlatMesh mesh;
+      const double c = 0.4 * std::cos(angle), s = 0.4 * std::sin(angle);
+      mesh.uvs = {{0.5 - c, 0.5 - s}, {0.5 + s, 0.5 - c}, {0.5 + c, 0.5 + s}, {0.5 - s, 0.5 + c}};
+      const Vec2d a = mesh.uvs[0], b = mesh.uvs[2];
+      mesh.uvs.push_back(
+          {a.x + along * (b.x - a.x) - 1e-9 * s, a.y + along * (b.y - a.y) + 1e-9 * c});
+      mesh.corners = {0, 1, 2, 0, 2, 4, 2, 3, 4, 3, 0, 4};
+      std::vector<Vec2f> rounded;
+      EXPECT_EQ(round_uvs(mesh.uvs, mesh.corners, rounded), 0u);
+      for (std::size_t i = 0; i < mesh.uvs.size(); ++i) {
+        const double off = std::hypot(rounded[i].x - mesh.uvs[i].x, rounded[i].y - mesh.uvs[i].y);
+        EXPECT_LT(off, 3.5 * 0x1p-24) << angle << ' ' << along;
+      }
+    }
+  }
+}
+
 TEST(RoundUvs, SliversThatLeanOnEachOtherAreOpened) {
   const FlatMesh mesh = leaning_slivers();
   std::vector<Vec2f> rounded;

@@ -4,8 +4,11 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <cstdint>
+#include <set>
+#include <span>
 #include <vector>
 
 #include "libatlas/core/clock.h"
@@ -74,6 +77,128 @@ TEST(SpreadSpecks, TheBestOfAllCirclesIsKept) {
   ASSERT_EQ(before, 7u);
   spread_specks(corners, corners_at(corners, uvs.size()), uvs);
   EXPECT_EQ(not_open(corners, uvs), 1u);
+}
+
+// Expects the first uvs to lie on the smallest circle that leaves no triangle thin, of those of 8
+// steps per root of their number, twice as much, and so on.
+void expect_smallest_circle(std::span<const std::uint32_t> corners, std::span<const Vec2f> uvs,
+                            std::uint32_t members, double radius) {
+  const auto thin_at = [&](double share) {
+    std::vector<Vec2f> scaled(uvs.begin(), uvs.end());
+    for (std::uint32_t i = 0; i < members; ++i)
+      scaled[i] = {float(0.5 + share * (uvs[i].x - 0.5)), float(0.5 + share * (uvs[i].y - 0.5))};
+    std::size_t count = 0;
+    for (std::size_t t = 0; t < corners.size(); t += 3)
+      count += is_thin(corners.subspan(t).first<3>(), scaled);
+    return count;
+  };
+  EXPECT_EQ(thin_at(1), 0u);
+  if (radius > 1.1 * 8 * std::sqrt(members) * kStep) {
+    EXPECT_GT(thin_at(0.5), 0u) << radius / kStep;
+  }
+}
+
+// Uvs in one place, with a ring of `n` around them. Each member is joined to an equal part of the
+// ring, and to the members before and after it.
+struct Speck {
+  std::vector<Vec2f> uvs;
+  std::vector<std::uint32_t> corners;
+};
+Speck speck_in_ring(std::uint32_t members, std::uint32_t n) {
+  Speck speck;
+  speck.uvs.assign(members, Vec2f{0.5F, 0.5F});
+  for (std::uint32_t k = 0; k < n; ++k) {
+    const double angle = 2 * M_PI * k / n;
+    speck.uvs.push_back({float(0.5 + 0.1 * std::cos(angle)), float(0.5 + 0.1 * std::sin(angle))});
+  }
+  for (std::uint32_t i = 0; i < members; ++i) {
+    const std::uint32_t begin = i * n / members, end = (i + 1) * n / members;
+    for (std::uint32_t k = begin; k < end; ++k)
+      speck.corners.insert(speck.corners.end(), {i, members + k, members + (k + 1) % n});
+    speck.corners.insert(speck.corners.end(), {i, members + end % n, (i + 1) % members});
+  }
+  for (std::uint32_t i = 2; i < members; ++i)
+    speck.corners.insert(speck.corners.end(), {0, i - 1, i});
+  return speck;
+}
+
+// The ring counts as points of a circle in its directions. Where each member is the mean of its
+// neighbours follows from these by one linear equation per member.
+TEST(SpreadSpecks, EachUvIsAmidItsNeighbours) {
+  for (const std::uint32_t members : {2u, 3u, 4u, 6u}) {
+    SCOPED_TRACE(members);
+    Speck speck = speck_in_ring(members, 12);
+    ASSERT_GT(not_open(speck.corners, speck.uvs), 0u);
+    spread_specks(speck.corners, corners_at(speck.corners, speck.uvs.size()), speck.uvs);
+    EXPECT_EQ(not_open(speck.corners, speck.uvs), 0u);
+    // Neighbours once each, and what their circle has for a radius.
+    std::vector<std::set<std::uint32_t>> around(members);
+    for (std::size_t c = 0; c < speck.corners.size(); ++c) {
+      const std::size_t t = c / 3 * 3;
+      if (speck.corners[c] >= members) continue;
+      around[speck.corners[c]].insert(speck.corners[t + (c + 1) % 3]);
+      around[speck.corners[c]].insert(speck.corners[t + (c + 2) % 3]);
+    }
+    double above = 0, below = 0;  // least squares: radius * outer = count * p - inner
+    std::vector<std::array<Vec2d, 2>> sides;
+    for (std::uint32_t i = 0; i < members; ++i) {
+      Vec2d inner{0, 0}, outer{0, 0};
+      for (const std::uint32_t other : around[i]) {
+        const Vec2d d{speck.uvs[other].x - 0.5, speck.uvs[other].y - 0.5};
+        const double length = other < members ? 1 : std::hypot(d.x, d.y);
+        Vec2d& sum = other < members ? inner : outer;
+        sum = {sum.x + d.x / length, sum.y + d.y / length};
+      }
+      const double count = double(around[i].size());
+      sides.push_back({Vec2d{count * (speck.uvs[i].x - 0.5) - inner.x,
+                             count * (speck.uvs[i].y - 0.5) - inner.y},
+                       outer});
+      above += sides[i][0].x * outer.x + sides[i][0].y * outer.y;
+      below += outer.x * outer.x + outer.y * outer.y;
+    }
+    const double radius = above / below;
+    expect_smallest_circle(speck.corners, speck.uvs, members, radius);
+    for (const auto& [moved, outer] : sides) {
+      EXPECT_NEAR(moved.x, radius * outer.x, 8 * kStep);
+      EXPECT_NEAR(moved.y, radius * outer.y, 8 * kStep);
+    }
+  }
+}
+
+// Three uvs on the mesh's border and one inside, in one place below half a ring. Those of the
+// border lie on the circle, and the one inside is amid all others.
+TEST(SpreadSpecks, UvsOfTheBorderLieOnTheCircle) {
+  constexpr std::uint32_t kParts = 7, kFirst = 4;
+  enum : std::uint32_t { left, middle, right, inside };
+  std::vector<Vec2f> uvs(4, Vec2f{0.5F, 0.5F});
+  std::vector<Vec2d> direction;
+  for (std::uint32_t k = 0; k <= kParts; ++k) {
+    direction.push_back({std::cos(M_PI * k / kParts), std::sin(M_PI * k / kParts)});
+    uvs.push_back({float(0.5 + 0.1 * direction[k].x), float(0.5 + 0.1 * direction[k].y)});
+  }
+  constexpr std::uint32_t last = kFirst + kParts;
+  std::vector<std::uint32_t> corners{left,  middle,   inside,     middle, right,      inside,
+                                     right, kFirst,   kFirst + 1, right,  kFirst + 1, inside,
+                                     left,  last - 1, last,       inside, last - 1,   left};
+  for (std::uint32_t k = 1; k + 1 < kParts; ++k)
+    corners.insert(corners.end(), {inside, kFirst + k, kFirst + k + 1});
+  spread_specks(corners, corners_at(corners, uvs.size()), uvs);
+  EXPECT_EQ(not_open(corners, uvs), 0u);
+  const auto off = [&](std::uint32_t i) { return Vec2d{uvs[i].x - 0.5, uvs[i].y - 0.5}; };
+  const double radius = std::hypot(off(middle).x, off(middle).y);
+  expect_smallest_circle(corners, uvs, 4, radius);
+  Vec2d sum{0, 0};
+  for (const std::uint32_t i : {left, middle, right}) {
+    // In equal parts of the half turn that is free of the mesh.
+    const double angle = M_PI * (1 + (i + 1) / 4.0);
+    EXPECT_NEAR(off(i).x, radius * std::cos(angle), kStep);
+    EXPECT_NEAR(off(i).y, radius * std::sin(angle), kStep);
+    sum = {sum.x + off(i).x, sum.y + off(i).y};
+  }
+  for (std::uint32_t k = 1; k < kParts; ++k)
+    sum = {sum.x + radius * direction[k].x, sum.y + radius * direction[k].y};
+  EXPECT_NEAR(off(inside).x, sum.x / (3 + kParts - 1), kStep);
+  EXPECT_NEAR(off(inside).y, sum.y / (3 + kParts - 1), kStep);
 }
 
 // Large specks are left as they are: to place each of their uvs amid its neighbours takes time that

@@ -54,6 +54,52 @@ TEST(WrittenStretch, IsThatOfTheUvsGiven) {
   EXPECT_NEAR(square.measure(1 / 1.69, 1.25).stretch_999, 1.3, 1e-5);
 }
 
+// Charts that are written 1, 1.1, 1.2, ... times as wide as the surface, in rising and falling
+// order. One of them has a single triangle, and a uv far away that belongs to none.
+TEST(WrittenStretch, MeasuresEachChartByItself) {
+  const Square square;
+  constexpr std::uint32_t kCharts = 6;
+  for (const bool rising : {false, true}) {
+    ChartSet set;
+    std::vector<ChartPlacement> placements;
+    std::vector<Vec3f> positions;
+    std::vector<Vec2f> uvs;
+    for (std::uint32_t i = 0; i < kCharts; ++i) {
+      Chart chart = square.charts.charts[0];
+      chart.first_uv = 4 * i;
+      chart.first_triangle = std::uint32_t(set.triangle_chart.size());
+      if (i == 2) chart.triangle_count = 1;
+      set.charts.push_back(chart);
+      const double wide = 1 + 0.1 * (rising ? i : kCharts - 1 - i);
+      placements.push_back(square.placements[0]);
+      placements.back().chart = i;
+      for (std::uint32_t k = 0; k < 4; ++k) {
+        const Vec2d uv = square.charts.uvs[k];
+        const Vec2d texel = page_texel(square.placements[0], {wide * uv.x, uv.y});
+        set.uvs.push_back(uv);
+        set.uv_vertex.push_back(4 * i + k);
+        positions.push_back(square.positions[k]);
+        uvs.push_back({float(texel.x / 256), float(texel.y / 128)});
+      }
+      if (i == 2) uvs.back() = {0, 1};
+      for (std::uint32_t t = 0; t < chart.triangle_count; ++t) {
+        for (int k = 0; k < 3; ++k) set.triangle_uv.push_back(4 * i + square.indices[3 * t + k]);
+        set.triangle_chart.push_back(i);
+        set.chart_triangles.push_back(chart.first_triangle + t);
+      }
+    }
+    MeshView mesh;
+    mesh.positions = positions;
+    for (double between = 1.05; between < 1.6; between += 0.1) {
+      // A chart a times as wide is stretched by the root of a.
+      const WrittenStretch written =
+          measure_written(mesh, {set, placements, square.pages}, uvs, std::sqrt(between), {});
+      EXPECT_NEAR(written.stretch_999, std::sqrt(1.5), 1e-5) << rising;
+      EXPECT_EQ(written.beyond, std::uint32_t(std::lround((1.55 - between) * 10))) << between;
+    }
+  }
+}
+
 TEST(WrittenStretch, CountsChartsThatRoundingBringsBeyondTheBound) {
   Square square;
   EXPECT_EQ(square.measure(1, 1.25).beyond, 0u);
