@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "libatlas/pack/larger_pages.h"
+#include "libatlas/pipeline/layout_options.h"
 #include "libatlas/scene/named_materials.h"
 
 namespace atlas {
@@ -32,14 +33,15 @@ std::string on_many_pages(const ExportReport& report, const ExportOptions& optio
       report.charts.size(), report.pages.size(), options.atlas_size, options.atlas_size, larger);
 }
 
-std::string on_small_charts(const ExportReport& report, double texels_a_chart) {
+std::string on_small_charts(const ExportReport& report, const ExportOptions& options,
+                            double texels_a_chart) {
   return fmt::format(
       "{} charts have {:.0f} texels each on average, and {:.0f} % of the pages are gutters and "
-      "gaps between them (more ExportOptions::atlases, a larger ExportOptions::atlas_size or a "
-      "lower ExportOptions::mip_levels leave more for "
-      "the light; a larger ChartOptions::max_stretch or charts across materials "
-      "(ChartOptions::split_at_materials) make fewer charts)",
-      report.charts.size(), texels_a_chart, 100 * (1 - report.uv_utilization));
+      "gaps between them ({} leave more for the light; a larger ChartOptions::max_stretch or "
+      "charts "
+      "across materials (ChartOptions::split_at_materials) make fewer charts)",
+      report.charts.size(), texels_a_chart, 100 * (1 - report.uv_utilization),
+      more_room(options, "a lower ExportOptions::mip_levels"));
 }
 
 // Returns whether the number of charts grows with that of the triangles because single vertices
@@ -94,9 +96,7 @@ constexpr double kMuchHeld = 0.1;
 // Returns what lets pages hold shorter texels.
 std::string room_for_texels(const ExportReport& report, const ExportOptions& options) {
   const bool held = report.least_side_share >= kMuchHeld && options.min_side > 1;
-  return held ? "more ExportOptions::atlases, a larger ExportOptions::atlas_size or a lower "
-                "ExportOptions::min_side"
-              : "more ExportOptions::atlases or a larger ExportOptions::atlas_size";
+  return more_room(options, held ? "a lower ExportOptions::min_side" : "");
 }
 
 std::string on_coarse_texels(const ExportReport& report, const ExportOptions& options) {
@@ -286,7 +286,7 @@ std::vector<std::string> advice_on(const ExportReport& report, const ExportOptio
   if (report.charts.size() >= kManyCharts && texels_a_chart < kFewTexels &&
       report.uv_utilization < kLittleUsed) {
     // At scale 1 all charts have what they asked for. They are small because their light is even.
-    if (report.scale < 1) lines.push_back(on_small_charts(report, texels_a_chart));
+    if (report.scale < 1) lines.push_back(on_small_charts(report, options, texels_a_chart));
   } else if (asked > 0 && !coarse && texels_a_chart < kHardlyAny) {
     lines.push_back(on_long_texels(report, texels_a_chart));
   }

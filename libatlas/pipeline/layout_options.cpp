@@ -32,7 +32,7 @@ LayoutOptions layout_options(const ChartSet& charts, const ExportOptions& option
   LayoutOptions layout;
   layout.preset = options.packing;
   layout.outlines = options.outlines;
-  layout.remedy = "give more ExportOptions::atlases or a larger ExportOptions::atlas_size";
+  layout.remedy = "give " + more_room(options);
   if (bake) {
     layout.pages = options.atlases;
     layout.page_size = options.atlas_size;
@@ -52,6 +52,14 @@ LayoutOptions layout_options(const ChartSet& charts, const ExportOptions& option
     layout.free_aspect = !layout.square;
   }
   return layout;
+}
+
+std::string more_room(const ExportOptions& options, const std::string& other) {
+  const bool one_page = options.keep_scene && !options.udim;
+  const std::string more = one_page ? "" : "more ExportOptions::atlases";
+  const std::string joint = one_page ? "" : other.empty() ? " or " : ", ";
+  const std::string larger = more + joint + "a larger ExportOptions::atlas_size";
+  return other.empty() ? larger : larger + " or " + other;
 }
 
 }  // namespace atlas

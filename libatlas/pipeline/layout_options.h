@@ -1,6 +1,8 @@
 // Internal: derives the layout options of pages from an export's options.
 #pragma once
 
+#include <string>
+
 #include "libatlas/charts/charts.h"
 #include "libatlas/pipeline/export_options.h"
 #include "libatlas/pipeline/page_layout.h"
@@ -12,5 +14,9 @@ namespace atlas {
 // uvs; a single page then grows with the number of charts if that is requested
 // (ExportOptions::larger_plain_page).
 LayoutOptions layout_options(const ChartSet& charts, const ExportOptions& options, bool bake);
+
+// Returns what gives charts more room, for messages: more pages (a scene that is kept has one), or
+// larger ones, or `other`, if not empty.
+std::string more_room(const ExportOptions& options, const std::string& other = "");
 
 }  // namespace atlas
