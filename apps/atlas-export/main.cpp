@@ -16,6 +16,7 @@
 #include "libatlas/core/file_extension.h"
 #include "libatlas/exporters/world.h"
 #include "libatlas/pipeline/export_world.h"
+#include "libatlas/pipeline/lightmap.h"
 #include "libatlas/pipeline/plan.h"
 
 namespace {

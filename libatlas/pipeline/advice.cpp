@@ -38,8 +38,7 @@ std::string on_small_charts(const ExportReport& report, const ExportOptions& opt
   return fmt::format(
       "{} charts have {:.0f} texels each on average, and {:.0f} % of the pages are gutters and "
       "gaps between them ({} leave more for the light; a larger ChartOptions::max_stretch or "
-      "charts "
-      "across materials (ChartOptions::split_at_materials) make fewer charts)",
+      "charts across materials (ChartOptions::split_at_materials) make fewer charts)",
       report.charts.size(), texels_a_chart, 100 * (1 - report.uv_utilization),
       more_room(options, "a lower ExportOptions::mip_levels"));
 }

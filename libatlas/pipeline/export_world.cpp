@@ -12,7 +12,6 @@
 #include "libatlas/core/clock.h"
 #include "libatlas/core/parallel.h"
 #include "libatlas/core/progress.h"
-#include "libatlas/exporters/world.h"
 #include "libatlas/image/image_io.h"
 #include "libatlas/pipeline/advice.h"
 #include "libatlas/pipeline/assemble_world.h"
@@ -387,25 +386,6 @@ class Export {
 };
 
 }  // namespace
-
-Lightmap lightmap_of(const ExportReport& report, const ExportOptions& options) {
-  const std::string name = page_name(options.target, 0);
-  Lightmap map;
-  map.images.push_back(name + ".png");
-  if (options.exr) map.images.push_back(name + ".exr");
-  if (options.tone.op == ToneOperator::linear) map.white = report.exposure_white;
-  return map;
-}
-
-std::string lightmap_text(const Lightmap& lightmap) {
-  const std::string scale =
-      lightmap.white > 0
-          ? fmt::format("white is {:.4g} of the light at the vertices", lightmap.white)
-          : "after the tone curve";
-  std::string text = fmt::format("lightmap: {} (sRGB-encoded, {})", lightmap.images[0], scale);
-  if (lightmap.images.size() > 1) text += fmt::format(", {} (linear)", lightmap.images[1]);
-  return text;
-}
 
 std::string plain_pages_text(std::span<const Extent> pages, bool udim) {
   const Extent page = pages[0];

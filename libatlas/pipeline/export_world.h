@@ -7,7 +7,6 @@
 
 #include "libatlas/core/context.h"
 #include "libatlas/core/status.h"
-#include "libatlas/exporters/world.h"
 #include "libatlas/pack/pack.h"
 #include "libatlas/pipeline/export_options.h"
 #include "libatlas/pipeline/plan.h"
@@ -28,11 +27,6 @@ namespace atlas {
 Result<ExportReport> export_world(const LoadedScene& loaded, const ExportOptions& options,
                                   const std::function<void(const StageReport&)>& stage_done,
                                   const Context& context);
-
-// Returns the lightmap that an export has written for a scene that is kept and carries light, and
-// the message that tells users of it.
-Lightmap lightmap_of(const ExportReport& report, const ExportOptions& options);
-std::string lightmap_text(const Lightmap& lightmap);
 
 // Returns the message that tells users of plain uvs about their pages (there must be at least one).
 // The uvs run from 0 to 1 along both sides of each page.

@@ -19,6 +19,7 @@
 #include "libatlas/exporters/world.h"
 #include "libatlas/pipeline/assemble_world.h"
 #include "libatlas/pipeline/export_world.h"
+#include "libatlas/pipeline/lightmap.h"
 #include "libatlas/scene/uv_page.h"
 #include "libatlas/sheets/one_sided.h"
 #include "libatlas/uvs/draw_once.h"

@@ -2,12 +2,14 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <random>
 #include <string>
 
 #include "libatlas/image/image_io.h"
 #include "libatlas/pipeline/export_world.h"
+#include "libatlas/pipeline/lightmap.h"
 #include "libatlas/scene/check_scene.h"
 #include "tests/pipeline/lit_scene.h"
 #include "tests/scene/gltf_maker.h"
@@ -23,7 +25,7 @@ std::array<double, 3> light_at(double x, double y, double z) {
   return {900 + 120 * x, 700 - 80 * y + 40 * z, 500 + 60 * z};
 }
 
-// Returns a torus of three materials, none of which reflects all light.
+// Returns a torus of two materials, neither of which reflects all light.
 LoadedScene torus_scene() {
   LoadedScene loaded = lit_scene(torus(48, 24));
   Scene& scene = loaded.scene;

@@ -258,8 +258,8 @@ class FileWriter {
     if (from.attributes.contains("_ILLUMINANCE")) return "_ILLUMINANCE";
     const auto& materials = source_.model.materials;
     const auto material = static_cast<std::size_t>(from.material);
-    const bool unlit =
-        from.material >= 0 && materials[material].extensions.contains("KHR_materials_unlit");
+    const bool unlit = from.material >= 0 && material < materials.size() &&
+                       materials[material].extensions.contains("KHR_materials_unlit");
     if (unlit || !from.attributes.contains("COLOR_0")) return "";
     left_out_colours_ = true;
     return "COLOR_0";

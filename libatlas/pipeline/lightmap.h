@@ -1,0 +1,19 @@
+// The lightmap that an export writes beside a scene that is kept and carries light.
+#pragma once
+
+#include <string>
+
+#include "libatlas/exporters/world.h"
+#include "libatlas/pipeline/export_options.h"
+#include "libatlas/report/export_report.h"
+
+namespace atlas {
+
+// Returns the images of the lightmap and the light that is white on them, after an export with
+// these options.
+Lightmap lightmap_of(const ExportReport& report, const ExportOptions& options);
+
+// Returns the message that tells users of it.
+std::string lightmap_text(const Lightmap& lightmap);
+
+}  // namespace atlas
