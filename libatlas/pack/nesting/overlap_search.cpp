@@ -171,10 +171,7 @@ class OverlapSearch {
     add_heavy_pairs(i, -1);
     put(i, {true, lightest.direction, lightest.at});
     map_.add(mask(i), places_[i].at, kLight);
-    if (lightest.weight == 0)
-      pairs_.set_free(i);
-    else
-      pairs_.measure(i);
+    pairs_.measure(i);
   }
 
   // Adds `times` what the weights of the pairs of i exceed the least weight by.

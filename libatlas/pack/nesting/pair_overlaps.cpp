@@ -42,14 +42,7 @@ void PairOverlaps::measure(std::uint32_t i) {
 }
 
 void PairOverlaps::measure(std::uint32_t i, std::uint32_t j) {
-  set(i, j, shared_cells(masks_[i], masks_[j]));
-}
-
-void PairOverlaps::set_free(std::uint32_t i) {
-  for (const std::uint32_t j : taking_part_) set(i, j, 0);
-}
-
-void PairOverlaps::set(std::uint32_t i, std::uint32_t j, std::int32_t cells) {
+  const std::int32_t cells = shared_cells(masks_[i], masks_[j]);
   const std::int32_t more = cells - cells_[pair(i, j)];
   if (more == 0) return;
   cells_[pair(i, j)] = cells_[pair(j, i)] = cells;

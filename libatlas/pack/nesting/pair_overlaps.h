@@ -35,8 +35,6 @@ class PairOverlaps {
   void reset();
   // Measures the pairs of mask i after it has moved.
   void measure(std::uint32_t i);
-  // The same, if mask i has moved to where it overlaps none.
-  void set_free(std::uint32_t i);
   // Raises the weights of pairs that overlap, those that overlap most by most, and lowers others.
   void raise_weights();
 
@@ -50,7 +48,6 @@ class PairOverlaps {
     return std::size_t(i) * masks_.size() + j;
   }
   void measure(std::uint32_t i, std::uint32_t j);
-  void set(std::uint32_t i, std::uint32_t j, std::int32_t cells);
 
   std::span<const PlacedMask> masks_;
   std::vector<std::uint32_t> taking_part_;
