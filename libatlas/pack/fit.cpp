@@ -39,10 +39,6 @@ GroupingResult in_texels(GroupingResult grouping, std::int32_t cell) {
   return grouping;
 }
 
-double scale_tolerance(const FitOptions& options, double exact, std::size_t items) {
-  return options.free_aspect && items >= kManyItems ? 0.02 : exact;
-}
-
 std::vector<Extent> smaller_pages(const FitOptions& options) {
   std::vector<Extent> sizes;
   for (std::int32_t s = 1; s <= options.page_size / 2; s *= 2) {

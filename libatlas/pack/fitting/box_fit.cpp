@@ -78,8 +78,8 @@ bool BoxFit::pack_at(double scale, std::uint32_t pages, BoxLayout& layout) {
     if (!box_fits_page(b)) return false;
   if (!group(pages, layout)) return false;
   if (pages == 1 && boxes_.size() >= kManyItems) return pack_many(layout);
-  if (boxes_.size() >= kVeryMany) return pack_by_gaps(pages, layout);
-  return pack_grouped(pages, layout) || pack_jointly(pages, layout) || pack_searched(pages, layout);
+  if (boxes_.size() < kVeryMany && pack_grouped(pages, layout)) return true;
+  return pack_jointly(pages, layout) || pack_searched(pages, layout);
 }
 
 Problem BoxFit::problem_of(std::span<const Extent> items, Extent page,
@@ -139,29 +139,12 @@ bool BoxFit::place(std::uint32_t item, std::uint32_t page, FreeRects& free,
   return true;
 }
 
-// Packs all pages at once, gap after gap. With thousands of items this is as dense as anything
-// else, and each page's list of free rectangles would take most of a second to keep.
-bool BoxFit::pack_by_gaps(std::uint32_t pages, BoxLayout& layout) {
-  const Problem problem = problem_of(boxes_, page_, pages);
-  return keep(pack_gaps(problem, sorted_items(boxes_, Order::area)), layout) ||
-         keep(pack_gaps(problem, sorted_items(boxes_, Order::height)), layout);
-}
-
-// Packs all pages at once by first fit. If the pages are nearly full, this is denser than groups,
+// Packs all pages at once, gap after gap. If the pages are nearly full, this is denser than groups,
 // since the small items of all groups fill the gaps of every page.
 bool BoxFit::pack_jointly(std::uint32_t pages, BoxLayout& layout) {
   const Problem problem = problem_of(boxes_, page_, pages);
-  const bool fast = options_.preset == PackPreset::fast;
-  for (Order order : {Order::area, Order::height}) {
-    if (keep(pack_gaps(problem, sorted_items(boxes_, order)), layout)) return true;
-    if (fast) break;
-  }
-  for (Order order : {Order::height, Order::max_side, Order::area}) {
-    if (keep(pack_first_fit(problem, sorted_items(boxes_, order), PlaceRule::bottom_left), layout))
-      return true;
-    if (fast) break;
-  }
-  return false;
+  return keep(pack_gaps(problem, sorted_items(boxes_, Order::area)), layout) ||
+         keep(pack_gaps(problem, sorted_items(boxes_, Order::height)), layout);
 }
 
 // Packs by local search if the items are few enough for it. On pages of a dozen boxes this gives 1

@@ -42,7 +42,6 @@ class BoxFit {
   Problem problem_of(std::span<const Extent> items, Extent page, std::uint32_t max_pages) const;
   bool pack_many(BoxLayout& layout) const;
   bool pack_grouped(std::uint32_t pages, BoxLayout& layout);
-  bool pack_by_gaps(std::uint32_t pages, BoxLayout& layout);
   bool pack_jointly(std::uint32_t pages, BoxLayout& layout);
   bool pack_searched(std::uint32_t pages, BoxLayout& layout);
   bool keep(Layout found, BoxLayout& layout) const;

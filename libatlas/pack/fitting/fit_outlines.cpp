@@ -39,7 +39,7 @@ bool search_scale(OutlineFit& fit, FitResult& result, OutlineLayout& best) {
   constexpr double kLittleMore = 1.02;
   if (best.scale > 0) scale = std::min(most, kLittleMore * best.scale);
   if (scale <= best.scale) return best.scale > 0;
-  const double tolerance = scale_tolerance(options, 0.005, options.shapes.size());
+  constexpr double kTolerance = 0.005;  // relative
   double low = best.scale, high = most * (1 + 1e-9), step = 0.97;
   // A scale at which all charts have their minimum sides.
   const double least = 1e-9 * options.max_scale;
@@ -51,7 +51,7 @@ bool search_scale(OutlineFit& fit, FitResult& result, OutlineLayout& best) {
     const bool ok = attempt(scale);
     if (ok && scale >= most) return true;
     (ok ? low : high) = scale;
-    if (low > 0 && high - low < tolerance * high) return true;
+    if (low > 0 && high - low < kTolerance * high) return true;
     if (low == 0) {
       // If the minimum sides alone take all pages, no scale helps. If they do not, two failures in
       // a row are rare, so this is checked after the second failure.
@@ -287,8 +287,7 @@ Result<FitResult> fit_outlines(const FitCharts& charts, const FitSearchOptions& 
     // Where all charts are as large as they may be, the pages can be smaller or fewer.
     const bool reducible = options.power_of_two || options.pages > 1;
     if (quick && reducible && quick->scale >= options.max_scale) quick.reset();
-    if (quick && options.free_aspect && n >= kManyOnPage && !has_specks(charts.outlines, options))
-      return std::move(*quick);
+    if (quick && options.free_aspect && n >= kManyOnPage) return std::move(*quick);
   }
   const bool many = quick && n >= kManyOnPage * options.pages;
   const double known = many && !options.free_aspect ? quick->scale : 0;

@@ -45,10 +45,6 @@ bool group_areas(std::span<const std::uint64_t> areas, std::uint32_t pages, cons
 // Returns the grouping of areas that count cells of `cell` x `cell` texels, in texels.
 GroupingResult in_texels(GroupingResult grouping, std::int32_t cell);
 
-// Returns the relative accuracy to which the largest scale that fits should be searched: `exact`,
-// or a coarse value if the page is cropped to the size that many items need.
-double scale_tolerance(const FitOptions& options, double exact, std::size_t items);
-
 // Returns the page sizes with power-of-two sides that are smaller than the largest, in texels, in
 // ascending order of area.
 std::vector<Extent> smaller_pages(const FitOptions& options);
