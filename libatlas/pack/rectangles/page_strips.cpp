@@ -92,7 +92,6 @@ void add_strip(Strip strip, std::vector<Strip>& strips) {
 void add_usual_strips(const Problem& problem, const PackOptions& options,
                       std::vector<Strip>& strips) {
   constexpr std::array kAround{0.97, 1.0, 1.03, 0.94, 1.06};
-  constexpr std::array kJustLonger{1.0, 1.04};
   const double area = area_wanted(problem), side = std::ceil(std::sqrt(area));
   const auto both = directions(problem);
   const Direction &upright = both[0], &lying = both[1];
@@ -109,8 +108,7 @@ void add_usual_strips(const Problem& problem, const PackOptions& options,
   for (const Direction& direction : both) {
     const double other = direction.lying ? upright.least : lying.least;
     if (direction.least > side)
-      for (const double factor : kJustLonger)
-        add_within(direction, direction.least * factor, strips);
+      add_within(direction, direction.least, strips);
     else
       for (const double factor : std::span(kAround).first(3))
         add_within(direction, std::min(side, area / other) * factor, strips);
