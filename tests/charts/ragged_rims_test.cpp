@@ -50,7 +50,7 @@ TEST(RaggedRims, TakeLittleLongerThanSmoothOnes) {
   EXPECT_LT(ragged, 40 * smooth) << smooth;
   EXPECT_LT(ragged, 2 * kSlowness);
   // Four times as many teeth take about four times as long, with a quadratic search sixteen times.
-  EXPECT_LT(ragged, 9 * seconds(saw(10000, 1.5f)));
+  EXPECT_LT(ragged, 6 * seconds(saw(10000, 1.5f)));
 }
 
 // Returns a fan around the origin, which is corner 0 of its triangles, with its area.
