@@ -132,7 +132,7 @@ TEST(Cells, AreGivenUpWhenCancelledAtAnyTime) {
   const Clock::duration whole = Clock::now() - start;
   constexpr int kTimes = 24;
   for (int i = 0; i < kTimes; ++i) {
-    std::atomic<bool> cancel{false};
+    std::atomic<bool> cancel{i == 0};
     Context context;
     context.cancel = &cancel;
     std::thread other([&] {
@@ -142,7 +142,7 @@ TEST(Cells, AreGivenUpWhenCancelledAtAnyTime) {
     const Cells cells = grow_cells({topology, plan, &rows}, {}, context);
     const bool given_up = cells.of_triangle.empty();
     other.join();
-    EXPECT_TRUE(given_up || cells.count >= 4000) << i;
+    EXPECT_TRUE(given_up || (i > 0 && cells.count >= 4000)) << i;
   }
 }
 

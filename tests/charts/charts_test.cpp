@@ -44,7 +44,7 @@ TEST(Charts, TheBoundAskedForIsTheBoundMeasured) {
     const ChartFindings found = check_charts(mesh.view(), set);
     EXPECT_EQ(found.fault, "");
     EXPECT_LE(found.stretch_999, bound * (1 + 1e-6));
-    EXPECT_GE(set.charts.size() + 2, before) << "a tighter bound needs as many charts or more";
+    EXPECT_GE(set.charts.size(), before) << "a tighter bound needs as many charts or more";
     before = set.charts.size();
   }
 }
@@ -69,7 +69,7 @@ TEST(Charts, AConeTakesFewCharts) {
   options.cone_degrees = 30;
   // Twenty caps of 29.6 degrees cover a sphere; greedy merging needs 35.
   EXPECT_LE(charts_of(Mesh(geodesic_sphere(30)), options).charts.size(), 40u);
-  EXPECT_LE(charts_of(Mesh(box(6)), options).charts.size(), 6u);
+  EXPECT_EQ(charts_of(Mesh(box(6)), options).charts.size(), 6u);
 }
 
 TEST(Charts, AFlatPlateIsOneChartHoweverFine) {
@@ -106,16 +106,16 @@ TEST(Charts, WhatUnrollsIsUnrolledWithoutStretch) {
     const ChartSet set = charts_of(mesh);
     const ChartFindings found = check_charts(mesh.view(), set);
     EXPECT_EQ(found.fault, "") << shape.name;
-    EXPECT_LE(set.charts.size(), 8u) << shape.name;
-    EXPECT_LT(found.stretch_l2, 1.002) << shape.name;
+    EXPECT_LE(set.charts.size(), shape.name == "box" ? 3u : 1u) << shape.name;
+    EXPECT_LT(found.stretch_l2, 1 + 1e-5) << shape.name;
   }
 }
 
 TEST(Charts, CurvedShapesNeedFewCharts) {
   const auto count = [](const Shape& shape) { return charts_of(Mesh(shape)).charts.size(); };
-  EXPECT_LE(count(icosphere(4)), 12u);
-  EXPECT_LE(count(torus(96, 48)), 16u);
-  EXPECT_LE(count(plate_with_holes(2, 8)), 16u);
+  EXPECT_LE(count(icosphere(4)), 7u);
+  EXPECT_LE(count(torus(96, 48)), 12u);
+  EXPECT_LE(count(plate_with_holes(2, 8)), 4u);
 }
 
 // A wavy prism as CAD programs triangulate it: both caps and the walls consist of needles in
@@ -153,13 +153,13 @@ Shape needle_prism(int around, double height) {
 }
 
 TEST(Charts, NeedlesOfCadPartsTakeFewCharts) {
-  for (const int around : {400, 1600}) {
+  for (const int around : {200, 800}) {
     const Mesh mesh(needle_prism(around, 3));
     const ChartSet set = charts_of(mesh);
     const ChartFindings found = check_charts(mesh.view(), set);
     EXPECT_EQ(found.fault, "") << around;
-    EXPECT_LE(set.charts.size(), 8u) << around;
-    EXPECT_LT(set.distortion.stretch_l2, 1.002) << around;
+    EXPECT_LE(set.charts.size(), 4u) << around;
+    EXPECT_LT(set.distortion.stretch_l2, 1.0001) << around;
   }
 }
 
@@ -200,7 +200,7 @@ TEST(Charts, ChartsOfAScanAreAsManyAsItsShapeNeedsHoweverFine) {
     least = std::min(least, set.charts.size());
   }
   EXPECT_LE(most, least + 3);
-  EXPECT_LE(most, 12u);
+  EXPECT_LE(most, 8u);
 }
 
 TEST(Charts, SameBytesForAnyThreadCount) {

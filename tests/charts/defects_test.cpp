@@ -105,7 +105,7 @@ TEST(Defects, PiecesOfCubesStayWithinAWideCone) {
 
 TEST(Defects, AMoebiusStripIsCut) {
   const ChartSet set = checked_charts(band(40, 1));
-  EXPECT_LE(set.charts.size(), 6u);
+  EXPECT_LE(set.charts.size(), 5u);
   EXPECT_GT(set.seam_length, 0.5);
 }
 
@@ -165,7 +165,7 @@ TEST(Defects, APieceKeepsTheOrientationOfMostOfItsArea) {
 TEST(Defects, FansOfSheetsAroundAnEdge) {
   const ChartSet set = checked_charts(Mesh(sheets(7)));
   EXPECT_EQ(set.repairs.nonmanifold_edges, 1u);
-  EXPECT_LE(set.charts.size(), 7u);
+  EXPECT_EQ(set.charts.size(), 4u) << "the flattest pairs continue each other";
 }
 
 TEST(Defects, TwoConesAtOneVertex) {
@@ -197,7 +197,7 @@ TEST(Defects, ADoubledSurfaceIsTwoSheets) {
   for (std::size_t i = 0; i < front.size(); i += 3) {
     for (const std::size_t k : {i, i + 2, i + 1}) mesh.indices.push_back(front[k]);
   }
-  EXPECT_LE(checked_charts(mesh).charts.size(), 4u);
+  EXPECT_EQ(checked_charts(mesh).charts.size(), 2u);
 }
 
 // Each of the coincident sheets becomes a chart, however many there are.
@@ -299,22 +299,24 @@ TEST(Defects, SlicedNeedlesAndSoup) {
   EXPECT_EQ(checked_charts(Mesh(soup(300, 4))).charts.size(), 300u);
 }
 
+// No piece equals another, so each is cut by itself.
 TEST(Defects, ManyTinyPiecesAreQuick) {
   Shape shape = box(1);
   Mesh mesh;
   for (std::uint32_t i = 0; i < 3000; ++i) {
     const auto base = static_cast<std::uint32_t>(mesh.positions.size());
     for (const Vec3f& p : shape.positions) {
-      mesh.positions.push_back({p.x + 2.0f * float(i % 60), p.y + 2.0f * float(i / 60), p.z});
+      mesh.positions.push_back(
+          {p.x + 2.0f * float(i % 60), p.y + 2.0f * float(i / 60), p.z * (1 + 1e-3f * float(i))});
     }
     for (const std::uint32_t v : shape.indices) mesh.indices.push_back(base + v);
   }
   const ChartSet set = checked_charts(mesh);
-  EXPECT_LE(set.charts.size(), 3000u * 6);
+  EXPECT_EQ(set.copied_pieces, 0u);
+  EXPECT_LE(set.charts.size(), 3000u * 3);
   EXPECT_NEAR(set.distortion.stretch_l2, 1, 1e-6);
-  // About ten microseconds per triangle are expected, so taking seconds would be a defect on any
-  // machine.
-  EXPECT_LT(set.timing.segmentation_cpu + set.timing.parameterization_cpu, 10.0);
+  // About ten microseconds per triangle are expected.
+  EXPECT_LT(set.timing.segmentation_cpu + set.timing.parameterization_cpu, 0.5 * kSlowness);
 }
 
 }  // namespace

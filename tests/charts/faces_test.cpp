@@ -93,7 +93,7 @@ TEST(Faces, BoundCellsOfLargePartsWithManyTeeth) {
     const Mesh mesh(wheel);
     const Result<ChartSet> set = make_charts(mesh.view(), options, {});
     ASSERT_TRUE(set.ok());
-    EXPECT_LT(set->charts.size(), 60u);
+    EXPECT_LT(set->charts.size(), 40u);
   }
 }
 

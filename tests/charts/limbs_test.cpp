@@ -204,7 +204,7 @@ TEST(Limbs, RingsThatNestInEachOtherAreCutLittle) {
     }
   }
   EXPECT_EQ(charts_of(mesh, 0).charts.size(), 20u);
-  EXPECT_LT(charts_of(mesh, 0.72).charts.size(), 300u);
+  EXPECT_LT(charts_of(mesh, 0.72).charts.size(), 240u);
 }
 
 TEST(Limbs, EdgesOfACoarseMeshMayBeChords) {

@@ -288,7 +288,6 @@ TEST(Tiles, TheWholeIsMeasuredAnew) {
   EXPECT_GT(given->distortion.stretch_999, found.stretch_999 + 0.01);
 }
 
-// Triangles that are turned against their chart stay so in its pieces.
 TEST(Tiles, LimitsOutOfRangeChangeNothing) {
   const Mesh mesh(grid(60, 6, 10, 1));
   ChartSet set = charts_of(mesh);
@@ -304,6 +303,7 @@ TEST(Tiles, LimitsOutOfRangeChangeNothing) {
   EXPECT_EQ(set.charts.size(), count);
 }
 
+// Triangles that are turned against their chart stay so in its pieces.
 TEST(Tiles, MayHaveTurnedTriangles) {
   Mesh mesh(grid(60, 6, 10, 1));
   for (std::size_t i = 0; i < mesh.indices.size(); i += 9)

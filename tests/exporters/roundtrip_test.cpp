@@ -13,6 +13,7 @@
 #include "libatlas/scene/reader.h"
 #include "tests/exporters/worlds.h"
 #include "tests/scene/temp_folder.h"
+#include "tests/support/slowness.h"
 
 namespace atlas {
 namespace {
@@ -263,14 +264,18 @@ TEST(VrmlWorld, DamageIsNoticed) {
       }
     }
     std::mt19937 random(3);
+    int survived = 0;
     for (int round = 0; round < 500; ++round) {
       std::string bytes = good;
       bytes[random() % bytes.size()] = char(random());
       const auto loaded = read_scene(folder.write(std::string("d") + name, bytes), {}, {});
       if (!loaded.ok()) continue;
+      ++survived;
       for (const std::uint32_t i : loaded->scene.indices)
         ASSERT_LT(i, loaded->scene.positions.size());
     }
+    // Of gzip files, hardly any damage is no error.
+    EXPECT_GT(survived, name == std::string("w.wrl") ? 100 : 0) << name;
   }
   std::string deep = "#VRML V2.0 utf8\n";
   for (int i = 0; i < 100000; ++i) deep += "Group { children ";
@@ -289,7 +294,7 @@ TEST(GltfWorld, OneUvForAllTakesLittleTime) {
   AtomicFiles files;
   const double begun = cpu_seconds();
   const auto written = write_gltf(world, folder / "w.gltf", files, {});
-  EXPECT_LT(cpu_seconds() - begun, 2);
+  EXPECT_LT(cpu_seconds() - begun, 0.5 * test::kSlowness);
   ASSERT_TRUE(written.ok()) << written.status().message();
   EXPECT_EQ(written->vertices, world.positions.size());
 }

@@ -238,11 +238,16 @@ TEST_P(DamagedFiles, AreShownByThePlayer) {
 }
 
 TEST_P(DamagedFiles, AreRepackedOrRefused) {
-  accepted_of(GetParam(), {100, 2, 5}, test::fuzz_repack);
+  const int accepted = accepted_of(GetParam(), {100, 2, 5}, test::fuzz_repack);
+  if (GetParam().extension == std::string("stl")) {
+    EXPECT_EQ(accepted, 0) << "there are no uvs";
+  } else {
+    EXPECT_GT(accepted, 5);
+  }
 }
 
 TEST_P(DamagedFiles, AreExportedAndReadAgain) {
-  EXPECT_GT(accepted_of(GetParam(), {40, 1, 2}, test::fuzz_export), 4);
+  EXPECT_GT(accepted_of(GetParam(), {20, 1, 2}, test::fuzz_export), 2);
 }
 
 INSTANTIATE_TEST_SUITE_P(Formats, DamagedFiles,
@@ -270,16 +275,16 @@ const std::string kLight = R"(1 2 3
 2
 )";
 
-constexpr Damage kOfLists{500, 3, 6};
+constexpr Damage kOfLists{250, 3, 6};
 
 TEST(DamagedLists, OfRectanglesArePackedOrRefused) {
-  EXPECT_GT(accepted_of({"csv", kCsv}, kOfLists, test::fuzz_rects), 20);
-  EXPECT_GT(accepted_of({"json", kJson}, kOfLists, test::fuzz_rects), 5);
+  EXPECT_GT(accepted_of({"csv", kCsv}, kOfLists, test::fuzz_rects), 10);
+  EXPECT_GT(accepted_of({"json", kJson}, kOfLists, test::fuzz_rects), 3);
 }
 
 TEST(DamagedLists, OfIlluminationAreReadOrRefused) {
-  EXPECT_GT(accepted_of({"txt", kLight}, kOfLists, test::fuzz_illumination), 20);
-  EXPECT_GT(accepted_of({"ply", kPly}, kOfLists, test::fuzz_illumination), 20);
+  EXPECT_GT(accepted_of({"txt", kLight}, kOfLists, test::fuzz_illumination), 10);
+  EXPECT_GT(accepted_of({"ply", kPly}, kOfLists, test::fuzz_illumination), 10);
 }
 
 // What fuzzers found in atlas-pack's lists: a number that no double holds.

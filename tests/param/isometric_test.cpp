@@ -193,7 +193,7 @@ TEST(Isometric, PowersOfTwoChangeNoDigit) {
 TEST(Isometric, EnergyIsNotAboveCgals) {
   if (!testing::cgal_parameterizers_built())
     GTEST_SKIP() << "CGAL's parameterisation package is not here";
-  for (unsigned seed = 0; seed < 6; ++seed) {
+  for (unsigned seed = 0; seed < 6; seed += 2) {
     Disc d = testing::make_cap(0.5 + 0.15 * seed, 14);
     testing::add_radial_noise(d, 0.1 * testing::mean_edge(d), seed);
     const std::vector<Vec2d> theirs = testing::cgal_arap(d.view(), 50);

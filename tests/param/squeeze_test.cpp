@@ -129,8 +129,8 @@ double searched_l2(const Disc& d, std::vector<Vec2d> uvs, double bound) {
 // The flat faces must not stretch to relieve the ears: squeezed as far as possible, the faces would
 // stretch twice as much as needed. Nor must they stretch to get below the bound.
 TEST(Squeeze, FlatFacesDoNotGiveWayToASharpVertex) {
-  for (const double degrees : {130.0, 135.0, 140.0}) {
-    for (const double ear : {0.06, 0.1, 0.14}) {
+  for (const double degrees : {130.0, 140.0}) {
+    for (const double ear : {0.06, 0.14}) {
       const Disc d = eared_strip(7, degrees * std::numbers::pi / 180, ear);
       param::FlattenOptions options{{.method = ParamMethod::isometric, .iterations = 30}};
       options.squeeze_iterations = 0;

@@ -116,7 +116,7 @@ TEST(Widen, TheBoundIsKept) {
     const double gap = least_gap(flat, 4 * kClearance);
     widen_mesh_gaps(flat.disc.view(), with(kClearance, bound), flat.uvs);
     EXPECT_LE(measure_distortion(flat.disc.view(), flat.uvs).stretch_999, bound) << slack;
-    EXPECT_GE(least_gap(flat, 4 * kClearance), gap * (1 - 1e-9)) << slack;
+    EXPECT_GE(least_gap(flat, 4 * kClearance), gap * (slack < 1e-2 ? 1 - 1e-9 : 1.01)) << slack;
     EXPECT_TRUE(testing::injective_by_pairs(flat.disc.view(), flat.uvs)) << slack;
   }
 }

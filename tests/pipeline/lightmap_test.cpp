@@ -43,6 +43,7 @@ LoadedScene torus_scene() {
 
 ExportOptions lightmap_options(const std::filesystem::path& target) {
   ExportOptions options;
+  options.packing = PackPreset::fast;
   options.target = target;
   options.atlas_size = 512;
   options.keep_scene = true;

@@ -318,15 +318,26 @@ TEST(Normals, OfDamagedFilesAreSoundOrRefused) {
       {"d.off", "NOFF\n3 1 0\n0 0 0 0 0 2\n1 0 0 0 1 0\n0 1 0 0 0 0\n3 0 1 2\n"}};
   std::mt19937 random(7);
   for (const auto& [name, good] : files) {
+    int survived = 0;
     for (int round = 0; round < 300; ++round) {
       std::string bytes = good;
-      if (round % 3 == 0) bytes.resize(random() % bytes.size());
-      for (int k = 0; k < 3 && !bytes.empty(); ++k) bytes[random() % bytes.size()] = char(random());
+      if (round % 6 == 0) bytes.resize(1 + random() % bytes.size());
+      for (int hits = 1 + int(random() % 3); hits > 0; --hits) {
+        // Replacing digits with digits keeps most files readable. What glTF has at its end are
+        // data.
+        const std::size_t at = random() % bytes.size();
+        const bool digit = bytes[at] >= '0' && bytes[at] <= '9';
+        const bool data = &good == &files[0].second && at + gltf.bytes.size() >= good.size();
+        if (digit) bytes[at] = char('0' + random() % 10);
+        if (data || round % 6 == 1) bytes[at] = char(random());
+      }
       const auto loaded = read_scene(folder.write(name, bytes), {.normals = true}, {});
       if (!loaded.ok()) continue;
+      ++survived;
       const Status sound = check_scene(loaded->scene);
       ASSERT_TRUE(sound.ok()) << name << ' ' << round << ": " << sound.message();
     }
+    EXPECT_GT(survived, 100) << name;
   }
 }
 

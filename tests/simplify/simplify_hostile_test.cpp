@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <cmath>
 #include <limits>
@@ -9,6 +10,7 @@
 #include "libatlas/core/clock.h"
 #include "tests/simplify/exact_slip.h"
 #include "tests/simplify/expect_sound.h"
+#include "tests/support/slowness.h"
 
 namespace atlas {
 namespace {
@@ -55,7 +57,13 @@ TEST(SimplifyHostile, TrianglesThatAreListedTwiceStay) {
   const SimplifiedMesh coarse = simplify(mesh, 10);
   EXPECT_EQ(broken_triangles(mesh, coarse), 0U);
   EXPECT_LT(coarse.triangles_out, mesh.triangles() / 2);
-  EXPECT_GE(coarse.triangles_out, 3U);
+  std::size_t copies = 0;
+  for (std::size_t k = 0; k < coarse.indices.size(); k += 3) {
+    std::array<Vec3f, 3> p;
+    for (std::size_t i = 0; i < 3; ++i) p[i] = mesh.positions[coarse.indices[k + i]];
+    copies += p == std::array<Vec3f, 3>{{{3, 4, 0}, {4, 4, 0}, {4, 5, 0}}};
+  }
+  EXPECT_EQ(copies, 2U);
 }
 
 TEST(SimplifyHostile, DegenerateTrianglesGoOrStayButDoNotMultiply) {
@@ -231,7 +239,7 @@ TEST(SimplifyHostile, FarFromTheOriginAndTiny) {
   // A box of a thousandth, a thousand units away: a float has about sixteen steps over its size.
   const ChartedMesh mesh = box(10, 1.0 / 1024, {1000, 1000, 1000});
   const SimplifiedMesh coarse = simplify(mesh, 1e5);
-  EXPECT_LE(coarse.triangles_out, mesh.triangles());
+  EXPECT_LT(coarse.triangles_out, mesh.triangles() * 9 / 10);
   EXPECT_LE(coarse.max_slip_texels, 0.5);
   EXPECT_EQ(open_edges(mesh.positions, coarse.indices).count, 0U);
 }
@@ -252,7 +260,7 @@ TEST(SimplifyHostile, AFanOfManyTriangles) {
   Stopwatch watch(cpu_seconds);
   const SimplifiedMesh coarse = simplify(mesh, 100);
   // Ranking the hub again after each collapse would take far longer.
-  EXPECT_LT(watch.lap(), 5);
+  EXPECT_LT(watch.lap(), 0.25 * test::kSlowness);
   EXPECT_EQ(broken_triangles(mesh, coarse), 0U);
   EXPECT_LT(coarse.triangles_out, 500U);
 }
@@ -380,7 +388,7 @@ TEST(SimplifyHostile, FlippedTrianglesThatDoNotExistAreIgnored) {
 TEST(SimplifyHostile, Cancelled) {
   const ChartedMesh mesh = sphere(24);
   const std::vector<double> densities(6, 50);
-  for (const double when : {0.0, 0.2, 0.99}) {
+  for (const double when : {0.0, 1.0 / 24}) {  // before the first round and after it
     std::atomic<bool> cancel{false};
     Context context;
     context.cancel = &cancel;
@@ -388,10 +396,9 @@ TEST(SimplifyHostile, Cancelled) {
       if (fraction >= when && fraction < 1) cancel = true;
     };
     const auto result = simplify_charts({mesh.view(), mesh.charts, densities}, {}, context);
-    if (cancel) {
-      ASSERT_FALSE(result.ok());
-      EXPECT_EQ(result.status().code(), ErrorCode::cancelled);
-    }
+    ASSERT_TRUE(cancel) << when;
+    ASSERT_FALSE(result.ok()) << when;
+    EXPECT_EQ(result.status().code(), ErrorCode::cancelled);
   }
 }
 

@@ -118,7 +118,7 @@ TEST(Star, ATriangleMustNotTurnOverInSpace) {
   EXPECT_FALSE(bent.judge(0, 1, 1, estimate));
 }
 
-// The three new triangles of a hexagon after its vertex has moved to neighbour 0 are 0-1-2, 0-2-3,
+// The four new triangles of a hexagon after its vertex has moved to neighbour 0 are 0-1-2, 0-2-3,
 // 0-3-4 and 0-4-5. The first of them is made thinner by moving neighbour 1 towards the edge 0-2.
 bool allows_triangle_of_height(double height, double thin_before) {
   Star star = hexagon([](double u, double v) { return glm::dvec3(u, v, 0); });

@@ -238,6 +238,8 @@ TEST(Render, AMovingCameraSeesFittedShadowsAtAnySpeed) {
   add_quad(scene, {{-30, 0, 30}, {30, 0, 30}, {30, 0, -30}, {-30, 0, -30}});
   add_quad(scene, {{-60, 5, 60}, {60, 5, 60}, {60, 5, -60}, {-60, 5, -60}});
   RenderOptions o = small();
+  o.width = 64;
+  o.height = 40;
   o.fit_view = o.show_visibility = true;
   o.view_distance = 2;
   o.schedule.interval_frames = 16;

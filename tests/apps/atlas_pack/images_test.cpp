@@ -24,9 +24,9 @@ TEST_F(AtlasPack, ImagesListWhatTheyWereMadeFrom) {
   write("in/notes.txt", "no image");
   const std::string inputs =
       ": \\\n  in \\\n  in/sub\\ dir \\\n  in/a.png \\\n  in/b.png \\\n  in/sub\\ dir/c.png\n";
-  for (const auto& [options, target] : {std::pair("-o sheet", "sheet.json"),
-                                        {"-o sheet.json", "sheet.json"},
-                                        {"-o sheet.png", "sheet.png"},
+  for (const auto& [options, target] : {std::pair("-o sheet --crop", "sheet.json"),
+                                        {"-o sheet.json --crop", "sheet.json"},
+                                        {"-o sheet.png --crop", "sheet.png"},
                                         {"-o many.png --no-alias --page 8x8", "many-0.png"},
                                         {"-o many --no-alias --page 8x8", "many-0.json"}}) {
     const RunResult r = run(fmt::format("images in {} --depfile sheet.d", options));

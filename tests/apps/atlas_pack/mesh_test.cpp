@@ -266,7 +266,6 @@ TEST_F(AtlasPack, MeshOptionsDoWhatTheySay) {
             std::string::npos);
   const auto square = pages("--crop --square");
   EXPECT_EQ(square["pages"][0]["width"], square["pages"][0]["height"]);
-  EXPECT_LE(pages("--max-pages 2")["pages"].size(), 2u);
   // The result of `best` depends only on seed and effort.
   pages("--preset best --effort 100 --seed 3 --threads 1");
   const std::string first = read("out.obj");
