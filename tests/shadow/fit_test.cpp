@@ -89,6 +89,16 @@ TEST(Fit, ATurningLightKeepsItsTexelSize) {
     EXPECT_DOUBLE_EQ(fit_light({std::cos(a), 1, std::sin(a)}, box, {})->texel, texel);
 }
 
+// Returns options for a view of 8 x 6 x 10 around a point.
+LightFitOptions view_around(const Vec3d& at) {
+  LightFitOptions options;
+  options.view = true;
+  for (int c = 0; c < 8; ++c)
+    options.view_corners[c] = {at.x + (c & 1 ? 4 : -4), at.y + (c & 2 ? 3 : -3),
+                               at.z + (c & 4 ? 5 : -5)};
+  return options;
+}
+
 TEST(Fit, AMovingCameraMovesTheMapByWholeTexels) {
   const Box3 box{{-50, 0, -50}, {50, 10, 50}};
   std::mt19937 rng(9);
@@ -97,11 +107,7 @@ TEST(Fit, AMovingCameraMovesTheMapByWholeTexels) {
   double first_x = 0, first_y = 0, texel = 0;
   for (int i = 0; i < 100; ++i) {
     const Vec3d at{in(rng), 1, in(rng)};
-    LightFitOptions o;
-    o.view = true;
-    for (int c = 0; c < 8; ++c)
-      o.view_corners[c] = {at.x + (c & 1 ? 4 : -4), at.y + (c & 2 ? 3 : -3),
-                           at.z + (c & 4 ? 5 : -5)};
+    const LightFitOptions o = view_around(at);
     const LightFit fit = *fit_light({0.3, 1, 0.4}, box, o);
     const Vec3d m = transform_point(fit.to_texture, point);
     const double x = m.x * o.resolution, y = m.y * o.resolution;
@@ -134,11 +140,7 @@ TEST(Fit, ASnappedMapIsWithinHalfATexelOfItsView) {
   double farthest = 0;
   for (int i = 0; i < 200; ++i) {
     const Vec3d at{in(rng), 1, in(rng)};
-    LightFitOptions o;
-    o.view = true;
-    for (int c = 0; c < 8; ++c)
-      o.view_corners[c] = {at.x + (c & 1 ? 4 : -4), at.y + (c & 2 ? 3 : -3),
-                           at.z + (c & 4 ? 5 : -5)};
+    const LightFitOptions o = view_around(at);
     const Vec3d m = transform_point(fit_light(random_direction(rng), box, o)->to_texture, at);
     for (const double part : {m.x, m.y}) {
       const double off = std::abs(part - 0.5) * o.resolution;
