@@ -29,11 +29,6 @@ void print_plan(const ExportPlan& plan, app::Terminal& terminal) {
   }
 }
 
-// Whether a scene is kept and gets a lightmap.
-bool has_lightmap(bool lit, const ExportOptions& options) {
-  return lit && options.keep_scene && !options.charts_only;
-}
-
 void print_result(const ExportReport& report, const ExportOptions& options,
                   app::Terminal& terminal) {
   if (!report.lit) {

@@ -4,6 +4,10 @@
 
 namespace atlas {
 
+bool has_lightmap(bool lit, const ExportOptions& options) {
+  return lit && options.keep_scene && !options.charts_only;
+}
+
 Lightmap lightmap_of(const ExportReport& report, const ExportOptions& options) {
   const std::string name = page_name(options.target, 0);
   Lightmap map;

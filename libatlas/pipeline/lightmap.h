@@ -9,6 +9,9 @@
 
 namespace atlas {
 
+// Returns whether an export with these options writes one, for a scene that is lit or is not.
+bool has_lightmap(bool lit, const ExportOptions& options);
+
 // Returns the images of the lightmap and the light that is white on them, after an export with
 // these options.
 Lightmap lightmap_of(const ExportReport& report, const ExportOptions& options);

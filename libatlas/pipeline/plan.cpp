@@ -11,6 +11,7 @@
 #include "libatlas/core/degrees.h"
 #include "libatlas/core/glm_bridge.h"
 #include "libatlas/exporters/world.h"
+#include "libatlas/pipeline/lightmap.h"
 #include "libatlas/scene/triangle_area.h"
 #include "libatlas/texture/luminance.h"
 
@@ -239,7 +240,7 @@ TextureOptions texture_options(const ExportPlan& plan, const ExportReport& repor
 
 ExportOptions planned_options(const Scene& scene, const ExportOptions& options) {
   ExportOptions planned = options;
-  if (!options.keep_scene || options.charts_only || !scene.lit()) return planned;
+  if (!has_lightmap(scene.lit(), options)) return planned;
   planned.atlases = 1;
   planned.simplify = false;
   if (options.quantity == Quantity::illuminance) planned.quantity = Quantity::luminance;

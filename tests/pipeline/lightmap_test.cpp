@@ -217,6 +217,45 @@ TEST(Lightmap, TakesTheLightOutOfAKeptGltfFile) {
   }
 }
 
+// What is lit by another file gets no light beside its map, either.
+TEST(Lightmap, TakesThePlaceOfLightFromAnotherFile) {
+  const TempFolder folder;
+  Gltf gltf;
+  gltf.single({{"attributes", {{"POSITION", gltf.floats(kSquare, "VEC3", 3)}}},
+               {"indices", gltf.indices(std::vector<std::uint16_t>{0, 1, 2, 0, 2, 3})}});
+  const auto loaded =
+      read_scene(folder.write("scene.glb", gltf.glb()),
+                 {.illumination_file = folder.write("light.txt", "1 2 3\n2 2 2\n3 1 1\n4 4 4\n"),
+                  .keep_scene = true},
+                 {});
+  ASSERT_TRUE(loaded.ok()) << loaded.status().message();
+  ExportOptions options = lightmap_options(folder / "w.glb");
+  for (const bool map : {true, false}) {
+    options.charts_only = !map;
+    options.exr = map;
+    ASSERT_TRUE(export_world(*loaded, options, {}, {}).ok());
+    const auto triangles = GltfOracle(folder / "w.glb").triangles();
+    ASSERT_EQ(triangles.size(), 2u);
+    for (const OracleTriangle& t : triangles)
+      EXPECT_EQ(t.attributes.contains("_ILLUMINANCE"), !map);
+  }
+}
+
+// Alpha of vertices is the fourth component of colours, which are white then.
+TEST(Lightmap, LeavesTheAlphaOfVertices) {
+  const TempFolder folder;
+  LoadedScene scene = torus_scene();
+  scene.scene.vertex_opacity.assign(scene.scene.positions.size(), 0.25f);
+  const auto report = export_world(scene, lightmap_options(folder / "w.glb"), {}, {});
+  ASSERT_TRUE(report.ok()) << report.status().message();
+  EXPECT_TRUE(report->not_kept.empty());
+  for (const OracleTriangle& t : GltfOracle(folder / "w.glb").triangles()) {
+    const std::vector<double>& colours = t.attributes.at("COLOR_0");
+    ASSERT_EQ(colours.size(), 12u);
+    for (std::size_t k = 0; k < 12; ++k) EXPECT_EQ(colours[k], k % 4 == 3 ? 0.25 : 1);
+  }
+}
+
 // A second run adds its own, or replaces the first one with its uvs; it does not leave a name of
 // images that no uvs address.
 TEST(Lightmap, IsNamedOnceInAFileThatIsExportedAgain) {

@@ -243,8 +243,9 @@ class SceneWriter {
   // them black, so a part whose vertices all have 0 and are opaque gets no light.
   void add_light(const std::vector<Key>& vertices, json& to) {
     if (!scene_.lit()) return;
-    std::vector<Vec3f> light = gather(scene_.illumination, vertices, 0);
-    if (world_.lightmap) std::fill(light.begin(), light.end(), Vec3f{1, 1, 1});
+    const std::vector<Vec3f> light = world_.lightmap
+                                         ? std::vector<Vec3f>(vertices.size(), Vec3f{1, 1, 1})
+                                         : gather(scene_.illumination, vertices, 0);
     if (writes_alpha_) {
       const std::vector<float> alpha = gather(scene_.vertex_opacity, vertices, 0);
       if (std::any_of(alpha.begin(), alpha.end(), [](float a) { return a != 1; })) {
