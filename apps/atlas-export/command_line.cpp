@@ -105,7 +105,8 @@ void add_chart_options(CLI::App& app, ExportCommand& command) {
 
 void add_texture_options(CLI::App& app, ExportOptions& options, RawText& raw) {
   const OptionGroup group(app, "Textures");
-  app.add_option("--atlases", options.atlases, "Largest number of atlas pages")
+  app.add_option("--atlases", options.atlases,
+                 "Largest number of atlas pages; of uvs without light and of lightmaps: default 1")
       ->capture_default_str()
       ->check(within(1, 1'000'000));
   app.add_option("--atlas-size", options.atlas_size, "Largest side of a page, a power of two")
@@ -265,7 +266,9 @@ std::optional<ExportCommand> parse_export_command(int argc, char** argv, int& ex
                           lower_extension(command.options.target) == ".obj";
   command.read.srgb_colours = command.options.quantity == Quantity::colour && !as_written;
   command.options.larger_plain_page = app.count("--atlas-size") == 0;
-  if (app.count("--atlases") > 0) command.options.plain_pages = command.options.atlases;
+  const bool asked = app.count("--atlases") > 0;
+  if (asked) command.options.plain_pages = command.options.atlases;
+  if (asked || app.count("--memory") > 0) command.options.lightmap_pages = command.options.atlases;
   if (app.count("--mips") > 0) {
     command.options.plain_mip_levels = command.options.mip_levels;
     command.options.more_mip_levels = false;

@@ -7,8 +7,9 @@ namespace atlas::app {
 namespace {
 
 using FlagName = std::pair<std::string_view, std::string_view>;
-constexpr std::array<FlagName, 28> kFlagNames{{
+constexpr std::array<FlagName, 29> kFlagNames{{
     {"ExportOptions::atlases", "--atlases"},
+    {"ExportOptions::lightmap_pages", "--atlases"},
     {"ExportOptions::plain_pages", "--atlases"},
     {"ExportOptions::atlas_size", "--atlas-size"},
     {"ExportOptions::texel_metres", "--texel"},

@@ -58,6 +58,22 @@ Status check_viewpoint(const Viewpoint& view) {
 
 constexpr int kMostUvSets = 7;  // behind TEXCOORD_0; engines read no more
 
+Status check_lightmap(const Lightmap& map, std::size_t triangles) {
+  if (map.images.empty() || (!map.linear.empty() && map.linear.size() != map.images.size()))
+    return wrong(fmt::format("its lightmap has {} images and {} of linear light (one a page each)",
+                             map.images.size(), map.linear.size()));
+  if (map.triangle_page.empty()) return {};
+  if (map.triangle_page.size() != triangles)
+    return wrong(fmt::format("its lightmap has the pages of {} triangles, the scene has {}",
+                             map.triangle_page.size(), triangles));
+  for (std::size_t t = 0; t < triangles; ++t) {
+    if (map.triangle_page[t] >= map.images.size())
+      return wrong(fmt::format("triangle {} is on page {} of its lightmap, which has {}", t,
+                               map.triangle_page[t], map.images.size()));
+  }
+  return {};
+}
+
 Status check_kept_scene(const World& world) {
   const Scene& scene = *world.scene;
   if (Status s = check_scene(scene); !s.ok()) return s;
@@ -68,7 +84,7 @@ Status check_kept_scene(const World& world) {
     return wrong("a world that keeps its scene has one page, without an image");
   if (world.positions.size() != scene.positions.size() || world.pages[0].indices != scene.indices)
     return wrong("its page has other corners than its scene");
-  return {};
+  return world.lightmap ? check_lightmap(*world.lightmap, scene.triangle_count()) : Status();
 }
 
 }  // namespace

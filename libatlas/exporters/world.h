@@ -40,14 +40,15 @@ struct Page {
   std::vector<bool> one_sided = {};
 };
 
-// The images of the light of a scene that is kept, addressed by the world's uvs.
+// The pages with the light of a scene that is kept, addressed by the world's uvs.
 struct Lightmap {
-  // File names beside the world: a .png, sRGB-encoded, and if asked for an .exr of the light
-  // itself.
-  std::vector<std::string> images = {};
+  std::vector<std::string> images =
+      {};  // file names beside the world, one .png a page, sRGB-encoded
+  std::vector<std::string> linear = {};  // one .exr of the light itself a page, or empty
   // The light that the .png shows as white, in the unit of Scene::illumination; 0: it does not grow
   // in proportion to light, because a tone curve bends it.
   double white = 0;
+  std::vector<std::uint32_t> triangle_page = {};  // 1 per triangle; empty: all are on the first
 };
 
 struct World {
@@ -72,8 +73,9 @@ struct World {
   // holds. 0: the first set that is free. OBJ has one set and ignores this.
   int uv_set = 0;
   // For `scene`: with a lightmap, vertices are written without light, by which viewers would
-  // multiply it. glTF names it as asset.extras.lightmap (images, texCoord and white), OBJ in a
-  // comment.
+  // multiply it. glTF names it as asset.extras.lightmap (images, linear, texCoord and white), and
+  // the page of a primitive, if there are several, as its extras.lightmap. OBJ names it in a
+  // comment, and has only one page.
   std::optional<Lightmap> lightmap = {};
 };
 

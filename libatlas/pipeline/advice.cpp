@@ -40,7 +40,7 @@ std::string on_small_charts(const ExportReport& report, const ExportOptions& opt
       "gaps between them ({} leave more for the light; a larger ChartOptions::max_stretch or "
       "charts across materials (ChartOptions::split_at_materials) make fewer charts)",
       report.charts.size(), texels_a_chart, 100 * (1 - report.uv_utilization),
-      more_room(options, "a lower ExportOptions::mip_levels"));
+      more_room(options, true, "a lower ExportOptions::mip_levels"));
 }
 
 // Returns whether the number of charts grows with that of the triangles because single vertices
@@ -95,7 +95,7 @@ constexpr double kMuchHeld = 0.1;
 // Returns what lets pages hold shorter texels.
 std::string room_for_texels(const ExportReport& report, const ExportOptions& options) {
   const bool held = report.least_side_share >= kMuchHeld && options.min_side > 1;
-  return more_room(options, held ? "a lower ExportOptions::min_side" : "");
+  return more_room(options, true, held ? "a lower ExportOptions::min_side" : "");
 }
 
 std::string on_coarse_texels(const ExportReport& report, const ExportOptions& options) {

@@ -52,6 +52,7 @@ std::string thin_triangles_text(std::uint64_t thin, std::uint64_t triangles) {
 }
 
 void keep_scene(const Scene& scene, const ChartSet& charts, World& world) {
+  world.pages.assign(1, {});
   world.pages[0].indices = scene.indices;
   world.pages[0].uv_indices = charts.triangle_uv;
   world.scene = &scene;

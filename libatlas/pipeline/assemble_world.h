@@ -31,8 +31,8 @@ void make_tiles(const PlacedCharts& placed, World& world);
 // Returns the message for users of a world with thin triangles.
 std::string thin_triangles_text(std::uint64_t thin, std::uint64_t triangles);
 
-// Turns a world of one page or of tiles into one that keeps its scene (World::scene), with all
-// corners as the scene has them. Triangles that were reversed for their charts get their
+// Turns a world of pages or of tiles into one that keeps its scene (World::scene), on one page
+// with all corners as the scene has them. Triangles that were reversed for their charts get their
 // orientation back, because the scene's normals and materials are for that side. Their uvs are then
 // clockwise.
 void keep_scene(const Scene& scene, const ChartSet& charts, World& world);

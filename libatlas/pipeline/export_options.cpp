@@ -40,11 +40,7 @@ Status check_options(const ExportOptions& o) {
             ".obj)"};
   }
   if (o.plain_pages < 1) return out_of_range("plain_pages", "at least 1");
-  if (o.keep_scene && o.plain_pages > 1 && !o.udim) {
-    return {ErrorCode::bad_option,
-            "ExportOptions::keep_scene: a scene that is kept has its uvs on one page (leave out "
-            "ExportOptions::plain_pages, or add ExportOptions::udim)"};
-  }
+  if (o.lightmap_pages < 1) return out_of_range("lightmap_pages", "at least 1");
   if (Status s = check_udim(o); !s.ok()) return s;
   if (o.uv_set < 0 || o.uv_set > 7) return out_of_range("uv_set", "within 1..7, or 0");
   if (o.uv_set > 0 && (!o.keep_scene || lower_extension(o.target) == ".obj")) {

@@ -29,7 +29,7 @@ struct ExportOptions {
   // The extension chooses the format: .wrl, .wrz, .obj, .gltf, .glb. Images are written beside it.
   std::filesystem::path target = {};
 
-  // The budget: at most `atlases` (>= 1) pages of at most atlas_size² texels; one with keep_scene.
+  // The budget: at most `atlases` (>= 1) pages of at most atlas_size² texels.
   // atlas_size is a power of two, 64..16384.
   std::uint32_t atlases = 8;
   std::int32_t atlas_size = 2048;
@@ -90,12 +90,13 @@ struct ExportOptions {
   bool charts_only = false;  // make charts and uvs only: bake no light, write no image
   // Also write the scene's own objects, materials, textures, normals and texture coordinates, see
   // World::scene. This works for .gltf and .glb, and for .obj, which cannot hold the textures.
-  // Light of the scene becomes a lightmap (World::lightmap) unless charts_only is set: a single
-  // page, of at most atlas_size², with the light as the vertices hold it, without reflectance; the
-  // mesh stays as it is. Data that Scene has no arrays for must have been requested
-  // (ReadOptions::rest). So must normals (ReadOptions::normals), except from glTF to glTF. Textures
-  // may stay encoded.
+  // Light of the scene becomes a lightmap (World::lightmap) unless charts_only is set: at most
+  // lightmap_pages (>= 1; 1 for .obj) pages of at most atlas_size², squares if there are several,
+  // with the light as the vertices hold it, without reflectance; the mesh stays as it is. Data that
+  // Scene has no arrays for must have been requested (ReadOptions::rest). So must normals
+  // (ReadOptions::normals), except from glTF to glTF. Textures may stay encoded.
   bool keep_scene = false;
+  std::uint32_t lightmap_pages = 1;
   // With keep_scene, for glTF: the set of the new uvs, TEXCOORD_<uv_set>, 1..7. What it holds is
   // replaced, for instance the uvs of an earlier export. 0: the first set that is free.
   int uv_set = 0;

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "libatlas/pipeline/lightmap.h"
+
 namespace atlas {
 namespace {
 
@@ -32,13 +34,15 @@ LayoutOptions layout_options(const ChartSet& charts, const ExportOptions& option
   LayoutOptions layout;
   layout.preset = options.packing;
   layout.outlines = options.outlines;
-  layout.remedy = "give " + more_room(options);
+  layout.remedy = "give " + more_room(options, bake);
   if (bake) {
     layout.pages = options.atlases;
     layout.page_size = options.atlas_size;
     layout.padding = gutter_pad(options.mip_levels);
     layout.alignment = 1 << options.mip_levels;
     layout.minimum_side = options.min_side;
+    // Pages of one shape need one line that says it (scene/uv_page.h); they may share an array.
+    layout.square = options.keep_scene && options.atlases > 1;
     layout.remedy += ", or a lower ExportOptions::min_side or ExportOptions::mip_levels";
   } else {
     layout.pages = options.plain_pages;
@@ -54,10 +58,10 @@ LayoutOptions layout_options(const ChartSet& charts, const ExportOptions& option
   return layout;
 }
 
-std::string more_room(const ExportOptions& options, const std::string& other) {
-  const bool one_page = options.keep_scene && !options.udim;
-  const std::string more = one_page ? "" : "more ExportOptions::atlases";
-  const std::string joint = one_page ? "" : other.empty() ? " or " : ", ";
+std::string more_room(const ExportOptions& options, bool bake, const std::string& other) {
+  const bool several = holds_pages(options, bake);
+  const std::string more = several ? "more ExportOptions::atlases" : "";
+  const std::string joint = !several ? "" : other.empty() ? " or " : ", ";
   const std::string larger = more + joint + "a larger ExportOptions::atlas_size";
   return other.empty() ? larger : larger + " or " + other;
 }

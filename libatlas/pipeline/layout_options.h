@@ -15,8 +15,8 @@ namespace atlas {
 // (ExportOptions::larger_plain_page).
 LayoutOptions layout_options(const ChartSet& charts, const ExportOptions& options, bool bake);
 
-// Returns what gives charts more room, for messages: more pages (a scene that is kept has one), or
-// larger ones, or `other`, if not empty.
-std::string more_room(const ExportOptions& options, const std::string& other = "");
+// Returns what gives charts more room, for messages: more pages (unless the file can only have one,
+// see holds_pages()), or larger ones, or `other`, if not empty.
+std::string more_room(const ExportOptions& options, bool bake, const std::string& other = "");
 
 }  // namespace atlas

@@ -2,28 +2,47 @@
 
 #include <fmt/format.h>
 
+#include "libatlas/core/file_extension.h"
+
 namespace atlas {
 
 bool has_lightmap(bool lit, const ExportOptions& options) {
   return lit && options.keep_scene && !options.charts_only;
 }
 
+bool holds_pages(const ExportOptions& options, bool bake) {
+  if (!options.keep_scene || options.udim) return true;
+  return bake && lower_extension(options.target) != ".obj";
+}
+
 Lightmap lightmap_of(const ExportReport& report, const ExportOptions& options) {
-  const std::string name = page_name(options.target, 0);
   Lightmap map;
-  map.images.push_back(name + ".png");
-  if (options.exr) map.images.push_back(name + ".exr");
+  for (std::size_t p = 0; p < report.pages.size(); ++p) {
+    const std::string name = page_name(options.target, p);
+    map.images.push_back(name + ".png");
+    if (options.exr) map.linear.push_back(name + ".exr");
+  }
   if (options.tone.op == ToneOperator::linear) map.white = report.exposure_white;
   return map;
 }
+
+namespace {
+
+std::string first_to_last(const std::vector<std::string>& names) {
+  return names.size() == 1 ? names[0] : names.front() + " to " + names.back();
+}
+
+}  // namespace
 
 std::string lightmap_text(const Lightmap& lightmap) {
   const std::string scale =
       lightmap.white > 0
           ? fmt::format("white is {:.4g} of the light at the vertices", lightmap.white)
           : "after the tone curve";
-  std::string text = fmt::format("lightmap: {} (sRGB-encoded, {})", lightmap.images[0], scale);
-  if (lightmap.images.size() > 1) text += fmt::format(", {} (linear)", lightmap.images[1]);
+  std::string text =
+      fmt::format("lightmap: {} (sRGB-encoded, {})", first_to_last(lightmap.images), scale);
+  if (!lightmap.linear.empty())
+    text += fmt::format(", {} (linear)", first_to_last(lightmap.linear));
   return text;
 }
 

@@ -12,6 +12,11 @@ namespace atlas {
 // Returns whether an export with these options writes one, for a scene that is lit or is not.
 bool has_lightmap(bool lit, const ExportOptions& options);
 
+// Returns whether the file can have several pages, with light (`bake`) or without. A scene that is
+// kept has its own materials, so only what glTF says of the pages of a lightmap can tell its
+// triangles apart, or UDIM tiles.
+bool holds_pages(const ExportOptions& options, bool bake);
+
 // Returns the images of the lightmap and the light that is white on them, after an export with
 // these options.
 Lightmap lightmap_of(const ExportReport& report, const ExportOptions& options);

@@ -241,7 +241,7 @@ TextureOptions texture_options(const ExportPlan& plan, const ExportReport& repor
 ExportOptions planned_options(const Scene& scene, const ExportOptions& options) {
   ExportOptions planned = options;
   if (!has_lightmap(scene.lit(), options)) return planned;
-  planned.atlases = 1;
+  planned.atlases = options.lightmap_pages;
   planned.simplify = false;
   if (options.quantity == Quantity::illuminance) planned.quantity = Quantity::luminance;
   return planned;
@@ -293,12 +293,22 @@ Status check_plan(const ExportPlan& plan, const ExportOptions& options) {
             "ExportOptions::udim: this scene carries light, whose pages are images with materials "
             "of their own (add ExportOptions::charts_only, or leave ExportOptions::udim out)"};
   }
+  if ((plan.bake ? options.atlases : options.plain_pages) > 1 && !holds_pages(options, plan.bake)) {
+    return plan.bake
+               ? Status{ErrorCode::bad_option,
+                        "ExportOptions::lightmap_pages: an .obj that keeps its scene has one page "
+                        "for its light (write .gltf or .glb, or leave out "
+                        "ExportOptions::lightmap_pages)"}
+               : Status{ErrorCode::bad_option,
+                        "ExportOptions::keep_scene: a scene that is kept has uvs without light on "
+                        "one page (leave out ExportOptions::plain_pages, or add "
+                        "ExportOptions::udim)"};
+  }
   for (const ExtraFile& file : options.extra_files)
     if (Status s = check_writable(file.path); !s.ok()) return s;
   if (!target.empty()) {
     if (Status s = check_writable(target); !s.ok() || !plan.bake) return s;
-    const std::string last_page =
-        page_name(target, options.keep_scene ? 0 : options.atlases - 1) + ".png";
+    const std::string last_page = page_name(target, options.atlases - 1) + ".png";
     if (Status s = check_writable(target.parent_path() / last_page); !s.ok()) return s;
   }
   if (!plan.bake) return {};

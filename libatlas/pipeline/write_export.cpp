@@ -100,9 +100,9 @@ World make_world(const ExportToWrite& made, const WorldMesh& mesh, ExportReport&
     if (options.udim) make_tiles(placed, world);
   } else {
     const std::vector<Extent>& pages = made.layout.pages;
-    for (std::size_t p = 0; p < pages.size(); ++p)
-      world.info.push_back(options.keep_scene ? uv_page_text(pages[p].width, pages[p].height)
-                                              : uv_page_text(p, pages[p].width, pages[p].height));
+    if (options.keep_scene) world.info.push_back(uv_page_text(pages[0].width, pages[0].height));
+    for (std::size_t p = 0; p < pages.size() && !options.keep_scene; ++p)
+      world.info.push_back(uv_page_text(p, pages[p].width, pages[p].height));
   }
   MeshView shape;
   shape.positions = made.scene.positions;
@@ -118,6 +118,10 @@ World make_world(const ExportToWrite& made, const WorldMesh& mesh, ExportReport&
     world.uv_set = options.uv_set;
     if (!made.baked) return world;
     world.lightmap = lightmap_of(report, options);
+    if (made.layout.pages.size() > 1) {
+      for (const std::uint32_t chart : mesh.triangle_chart)
+        world.lightmap->triangle_page.push_back(std::uint32_t(made.layout.placements[chart].page));
+    }
     world.info.push_back(lightmap_text(*world.lightmap));
     return world;
   }

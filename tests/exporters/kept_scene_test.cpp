@@ -30,6 +30,42 @@ nlohmann::json gltf_of(const std::filesystem::path& path) {
   return nlohmann::json::parse(test::gltf_json(path));
 }
 
+TEST(KeptScene, HasALightmapThatIsConsistent) {
+  const Scene scene = small_scene();
+  const auto message = [&](const Lightmap& map) {
+    World world = world_of(scene);
+    world.lightmap = map;
+    return check_world(world).message();
+  };
+  EXPECT_EQ(message({{"a.png"}, {}, 1}), "");
+  EXPECT_EQ(message({{"a.png", "b.png"}, {"a.exr", "b.exr"}, 1, {0, 1, 1, 0}}), "");
+  for (const auto& [map, part] :
+       {std::pair{Lightmap{}, "0 images and 0 of linear"},
+        {Lightmap{{"a.png", "b.png"}, {"a.exr"}}, "2 images and 1 of linear"},
+        {Lightmap{{"a.png"}, {}, 1, {0, 0, 0}}, "the pages of 3 triangles, the scene has 4"},
+        {Lightmap{{"a.png"}, {}, 1, {0, 0, 1, 0}},
+         "triangle 2 is on page 1 of its lightmap, which has 1"}})
+    EXPECT_NE(message(map).find(part), std::string::npos) << message(map);
+}
+
+// A primitive of each page; a writer of OBJ has no place for them.
+TEST(KeptScene, NamesThePagesOfALightmap) {
+  const TempFolder folder;
+  const Scene scene = small_scene();
+  World world = world_of(scene);
+  world.lightmap = Lightmap{{"a.png", "b.png"}, {}, 1, {1, 0, 1, 1}};
+  ASSERT_TRUE(write(world, folder / "w.gltf").ok());
+  const auto triangles = test::read_kept_gltf(folder / "w.gltf");
+  ASSERT_EQ(triangles.size(), 4u);
+  std::vector<Vec3f> on_first;
+  for (const KeptTriangle& t : triangles)
+    if (t.page == 0) on_first.push_back(t.corners[0].position);
+  EXPECT_EQ(on_first, std::vector<Vec3f>{scene.positions[scene.indices[3]]});
+  const Status refused = write(world, folder / "w.obj");
+  EXPECT_EQ(refused.code(), ErrorCode::bad_input);
+  EXPECT_NE(refused.message().find("on which page of a lightmap"), std::string::npos);
+}
+
 TEST(KeptScene, OfGltfHasBothUvsNormalsNamesAndMaterials) {
   for (const char* name : {"w.gltf", "w.glb"}) {
     const TempFolder folder;

@@ -99,19 +99,17 @@ TEST(ExportOptions, TheShortestSideFitsAPageWithItsGutters) {
   EXPECT_EQ(code(33, 5), ErrorCode::bad_option);
 }
 
-TEST(ExportOptions, AKeptSceneHasOnePage) {
-  const auto code = [](const char* target, std::uint32_t plain_pages) {
+TEST(ExportOptions, AKeptSceneNeedsAFormatWithRoomForIt) {
+  const auto code = [](const char* target) {
     const Status status = check([&](ExportOptions& o) {
       o.target = target;
-      o.plain_pages = plain_pages;
       o.keep_scene = true;
     });
     return status.code();
   };
-  EXPECT_EQ(code("w.gltf", 1), ErrorCode::ok);
-  EXPECT_EQ(code("w.obj", 1), ErrorCode::ok);
-  EXPECT_EQ(code("w.gltf", 2), ErrorCode::bad_option);
-  EXPECT_EQ(code("w.wrl", 1), ErrorCode::bad_option);
+  EXPECT_EQ(code("w.gltf"), ErrorCode::ok);
+  EXPECT_EQ(code("w.obj"), ErrorCode::ok);
+  EXPECT_EQ(code("w.wrl"), ErrorCode::bad_option);
 }
 
 TEST(ExportOptions, OnlyAKeptSceneOfGltfHasSeveralSetsOfUvs) {

@@ -69,6 +69,7 @@ void add_primitive(const GltfFile& file, const json& primitive, const std::strin
   const auto texcoords = floats("TEXCOORD_0", 2), uvs = floats("TEXCOORD_1", 2);
   const json& material =
       file.document.at("materials").at(primitive.at("material").get<std::size_t>());
+  const std::size_t page = primitive.value("extras", json::object()).value("lightmap", 0);
   const auto indices = file.values<std::uint32_t>(primitive.at("indices"), 1);
   for (std::size_t k = 0; k + 2 < indices.size(); k += 3) {
     KeptTriangle triangle{object,
@@ -76,7 +77,8 @@ void add_primitive(const GltfFile& file, const json& primitive, const std::strin
                           image_of(file.document, material),
                           {},
                           !normals.empty(),
-                          attributes.at("TEXCOORD_0") != attributes.at("TEXCOORD_1")};
+                          attributes.at("TEXCOORD_0") != attributes.at("TEXCOORD_1"),
+                          page};
     for (std::size_t c = 0; c < 3; ++c) {
       const std::size_t v = indices[k + c];
       KeptCorner& corner = triangle.corners[c];

@@ -23,6 +23,7 @@ struct KeptTriangle {
   std::string image;  // glTF: name or number of the image of its base colour, or empty
   std::array<KeptCorner, 3> corners;
   bool has_normals = false, has_texcoords = false;
+  std::size_t page = 0;  // glTF: of the lightmap (extras.lightmap of the primitive)
 };
 
 // Both throw std::runtime_error if the file is not as this library writes it: triangles, floats,

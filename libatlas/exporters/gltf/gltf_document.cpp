@@ -65,8 +65,16 @@ void GltfDocument::name_uv_sets(const std::set<std::int64_t>& sets) {
 void GltfDocument::name_lightmap(const World& world, std::int64_t uv_set) {
   if (!world.lightmap) return;
   nlohmann::json map = {{"images", world.lightmap->images}, {"texCoord", uv_set}};
+  if (!world.lightmap->linear.empty()) map["linear"] = world.lightmap->linear;
   if (world.lightmap->white > 0) map["white"] = world.lightmap->white;
   json["asset"]["extras"]["lightmap"] = std::move(map);
+}
+
+void name_lightmap_page(const World& world, std::uint32_t page, nlohmann::json& primitive) {
+  if (!world.lightmap || world.lightmap->triangle_page.empty()) return;
+  nlohmann::json& extras = primitive["extras"];
+  if (!extras.is_null() && !extras.is_object()) extras = {{"source", std::move(extras)}};
+  extras["lightmap"] = page;
 }
 
 std::size_t GltfDocument::add_view(const void* data, std::size_t size, nlohmann::json view) {

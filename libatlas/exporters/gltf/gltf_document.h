@@ -17,6 +17,10 @@
 
 namespace atlas {
 
+// Says on which page of the world's lightmap the triangles of a primitive are, as its
+// extras.lightmap, if there are several.
+void name_lightmap_page(const World& world, std::uint32_t page, nlohmann::json& primitive);
+
 class GltfDocument {
  public:
   // The document begins with the world's title and information. `binary`: whether it becomes a

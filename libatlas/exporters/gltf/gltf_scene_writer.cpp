@@ -175,6 +175,7 @@ class SceneWriter {
     json primitive = {{"material", material}};
     primitive["attributes"] = attributes(part, unified.vertices);
     primitive["indices"] = document_.add_indices(unified.indices);
+    name_lightmap_page(world_, part.page, primitive);
     mesh_of(part.object)["primitives"].push_back(std::move(primitive));
     result.triangles += part.triangles.size();
     result.vertices += unified.vertices.size();
@@ -305,7 +306,9 @@ Result<WorldFile> write_gltf_scene(const World& world, const fs::path& path, Ato
   GltfTextures textures(*world.scene, path, document, files);
   MaterialWriter materials(world, document, textures);
   SceneWriter writer(world, document);
-  const std::vector<ScenePart> parts = scene_parts(*world.scene);
+  const std::vector<ScenePart> parts =
+      world.lightmap ? scene_parts(*world.scene, world.lightmap->triangle_page)
+                     : scene_parts(*world.scene);
   for (std::size_t i = 0; i < parts.size(); ++i) {
     if (context.cancelled()) return Status::cancelled();
     auto material = materials.material(parts[i]);

@@ -167,7 +167,7 @@ class FileWriter {
       for (; next < std::size_t(shown.primitive); ++next) add_unchanged(number, next, mesh);
       next = std::size_t(shown.primitive) + 1;
       if (shown.triangles == 0) continue;  // all its triangles were defects
-      mesh["primitives"].push_back(primitive_of(number, shown, result));
+      add_primitive(number, shown, mesh, result);
     }
     for (; next < model_mesh(number).primitives.size(); ++next) add_unchanged(number, next, mesh);
     drop_data_extensions(mesh, losses_);
@@ -219,14 +219,42 @@ class FileWriter {
     });
   }
 
-  json primitive_of(std::size_t mesh, const GltfShownPrimitive& shown, WorldFile& result) {
+  // Adds a primitive with the new uvs, or one for each page of the lightmap that it is on. These
+  // share the vertices.
+  void add_primitive(std::size_t mesh, const GltfShownPrimitive& shown, json& to,
+                     WorldFile& result) {
+    const UnifiedMesh<2> unified = unify(shown);
+    const json primitive = primitive_of(mesh, shown, unified.vertices);
+    std::map<std::uint32_t, std::vector<std::uint32_t>> pages;
+    for (std::size_t k = 0; k < unified.indices.size(); ++k)
+      pages[page_of(shown.first_triangle + k / 3)].push_back(unified.indices[k]);
+    for (const auto& [page, indices] : pages) {
+      json part = primitive;
+      part["indices"] = document_.add_indices(indices);
+      name_lightmap_page(world_, page, part);
+      to["primitives"].push_back(std::move(part));
+    }
+    result.triangles += shown.triangles;
+    result.vertices += unified.vertices.size();
+    result.uvs += unified.vertices.size();
+  }
+
+  std::uint32_t page_of(std::size_t triangle) const {
+    const bool several = world_.lightmap && !world_.lightmap->triangle_page.empty();
+    return several ? world_.lightmap->triangle_page[triangle] : 0;
+  }
+
+  // Returns a primitive without indices.
+  json primitive_of(std::size_t mesh, const GltfShownPrimitive& shown,
+                    const std::vector<Key>& keys) {
     const auto number = static_cast<std::size_t>(shown.primitive);
     const tinygltf::Primitive& from = model_mesh(mesh).primitives[number];
-    const UnifiedMesh<2> unified = unify(shown);
     std::vector<std::uint32_t> vertices;
-    for (const Key& key : unified.vertices) vertices.push_back(key[0]);
+    for (const Key& key : keys) vertices.push_back(key[0]);
     json primitive = primitive_json(mesh, number);
-    for (const char* key : {"mode", "attributes", "targets", "material"}) primitive.erase(key);
+    for (const char* key : {"mode", "attributes", "indices", "targets", "material"})
+      primitive.erase(key);
+    if (replaces_lightmap(source_.document, world_, set_)) drop_lightmap_page(primitive);
     const std::string light = light_on_map(from);
     const auto kept = [&light](std::map<std::string, int> attributes) {
       attributes.erase(light);
@@ -241,13 +269,9 @@ class FileWriter {
     if (sets_of(from.attributes).contains(set_)) usable.insert(set_);
     if (const auto material = materials_.material(from.material, usable))
       primitive["material"] = *material;
-    add_uvs(unified.vertices, sets, primitive["attributes"]);
+    add_uvs(keys, sets, primitive["attributes"]);
     add_light(shown, vertices, primitive["attributes"]);
-    primitive["indices"] = document_.add_indices(unified.indices);
     drop_data_extensions(primitive, losses_);
-    result.triangles += shown.triangles;
-    result.vertices += vertices.size();
-    result.uvs += vertices.size();
     return primitive;
   }
 

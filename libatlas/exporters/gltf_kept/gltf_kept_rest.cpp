@@ -119,6 +119,11 @@ void keep_instances(GltfData& data, json& node, Losses& losses) {
   losses.add("instances of nodes whose data cannot be read");
 }
 
+// Returns a member of an object; null if there is none, or `part` is no object.
+json member(const json& part, const char* key) {
+  return part.is_object() ? part.value(key, json()) : json();
+}
+
 // Returns the lines of a source that are still true. Pages of its uvs name their set, because they
 // are in one file with others now.
 json true_info(json info, bool ours, const std::set<std::int64_t>& new_sets) {
@@ -155,6 +160,18 @@ json merge_assets(const json& source, const json& own, const std::set<std::int64
   merged["version"] = own["version"];
   merged["generator"] = own["generator"];
   return merged;
+}
+
+bool replaces_lightmap(const json& source, const World& world, std::int64_t uv_set) {
+  const json map = member(member(member(source, "asset"), "extras"), "lightmap");
+  return map.is_object() && (world.lightmap || member(map, "texCoord") == json(uv_set));
+}
+
+void drop_lightmap_page(json& primitive) {
+  const auto extras = primitive.find("extras");
+  if (extras == primitive.end() || !extras->is_object()) return;
+  extras->erase("lightmap");
+  if (extras->empty()) primitive.erase("extras");
 }
 
 void drop_data_extensions(json& part, Losses& losses) {

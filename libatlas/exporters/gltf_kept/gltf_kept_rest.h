@@ -17,6 +17,13 @@ namespace atlas {
 nlohmann::json merge_assets(const nlohmann::json& source, const nlohmann::json& own,
                             const std::set<std::int64_t>& new_sets);
 
+// Returns whether the lightmap that an earlier export has named in the source is none any more: the
+// world has one of its own, or uvs in that set.
+bool replaces_lightmap(const nlohmann::json& source, const World& world, std::int64_t uv_set);
+
+// Removes the page of such a lightmap from a primitive (see name_lightmap_page()).
+void drop_lightmap_page(nlohmann::json& primitive);
+
 // Removes from a part of the document the extensions that refer to data by number, except
 // EXT_mesh_gpu_instancing. Data gets new numbers, and only such an extension knows where its own
 // are.

@@ -33,15 +33,16 @@ std::vector<std::uint32_t> first_equal_of(std::span<const Vector> values) {
 
 }  // namespace
 
-std::vector<ScenePart> scene_parts(const Scene& scene) {
-  using Key = std::tuple<std::uint32_t, std::uint32_t, bool, bool>;
+std::vector<ScenePart> scene_parts(const Scene& scene,
+                                   std::span<const std::uint32_t> triangle_page) {
+  using Key = std::tuple<std::uint32_t, std::uint32_t, bool, bool, std::uint32_t>;
   std::map<Key, ScenePart> parts;
   ScenePart* last = nullptr;
   Key last_key;
   for (std::size_t t = 0; t < scene.triangle_count(); ++t) {
     const std::uint32_t object = scene.triangle_object.empty() ? 0 : scene.triangle_object[t];
     const Key key{object, scene.triangle_material[t], all_named(scene.texcoord_indices, t),
-                  all_named(scene.normal_indices, t)};
+                  all_named(scene.normal_indices, t), triangle_page.empty() ? 0 : triangle_page[t]};
     if (!last || key != last_key) {
       last = &parts[key];
       last_key = key;
@@ -50,7 +51,7 @@ std::vector<ScenePart> scene_parts(const Scene& scene) {
   }
   std::vector<ScenePart> result;
   for (auto& [key, part] : parts) {
-    std::tie(part.object, part.material, part.texcoords, part.normals) = key;
+    std::tie(part.object, part.material, part.texcoords, part.normals, part.page) = key;
     result.push_back(std::move(part));
   }
   return result;

@@ -163,10 +163,18 @@ TEST_F(AtlasExport, ScenesThatCannotBeKept) {
   expect_refusal(scene, "--keep-scene: VRML has no room", "--keep-scene --charts-only");
   expect_refusal(scene, "--keep-scene: VRML has no room", "--keep-scene");
   const auto before = files();
-  const RunResult r =
-      run(fmt::format("{0}/box.obj -o {0}/w.glb --keep-scene --atlases 2", dir_.string()));
-  EXPECT_EQ(r.exit_code, 2);
-  EXPECT_NE(r.output.find("on one page (leave out --atlases"), std::string::npos) << r.output;
+  for (const auto& [line, text] :
+       {std::pair{"w.glb --charts-only",
+                  "--keep-scene: a scene that is kept has uvs without light "
+                  "on one page (leave out --atlases, or add --udim)"},
+        {"w.obj",
+         "--atlases: an .obj that keeps its scene has one page for its light (write .gltf "
+         "or .glb, or leave out --atlases)"}}) {
+    const RunResult r =
+        run(fmt::format("{0}/box.obj --keep-scene --atlases 2 -o {0}/{1}", dir_.string(), line));
+    EXPECT_EQ(r.exit_code, 2) << line;
+    EXPECT_NE(r.output.find(text), std::string::npos) << r.output;
+  }
   EXPECT_EQ(files(), before);
 }
 
