@@ -162,6 +162,7 @@ Status play(CommandLine& line, Terminal& terminal, const Context& context) {
   const auto& [gl, window] = *screen;
   Result<Renderer> renderer = Renderer::make(*scene, line.render);
   if (!renderer.ok()) return renderer.status();
+  scene->lightmap.reset();  // up to gigabytes of floats, which the renderer has, too
   terminal.line(fmt::format("{} triangles, OpenGL {} on {}", scene->triangle_count(),
                             gl->info().version, gl->info().renderer));
   for (const std::string& text : renderer->plan()) terminal.line(text);

@@ -116,6 +116,42 @@ Status check_triangles(const Scene& scene) {
   return s;
 }
 
+// Checks that every triangle on the lightmap has all three coordinates, and a page with an image.
+Status check_lightmap(const Scene& scene) {
+  if (!scene.lightmap) return {};
+  const SceneLightmap& map = *scene.lightmap;
+  const std::size_t triangles = scene.triangle_count();
+  if (map.texcoord_indices.size() != 3 * triangles || map.triangle_page.size() != triangles)
+    return wrong("lightmap has {} texcoord_indices and {} pages for {} triangles",
+                 map.texcoord_indices.size(), map.triangle_page.size(), triangles);
+  if (const std::size_t v = first_not_finite(map.texcoords); v < map.texcoords.size())
+    return wrong("lightmap.texcoords[{}] is not finite", v);
+  for (std::size_t p = 0; p < map.pages.size(); ++p) {
+    const ImageF& page = map.pages[p];
+    if (!page.whole() || (!page.empty() && page.channels != 3))
+      return wrong(
+          "lightmap.pages[{}] is {} x {} with {} channels (must be 3), and holds {} values", p,
+          page.width, page.height, page.channels, page.texels.size());
+    if (!std::all_of(page.texels.begin(), page.texels.end(),
+                     [](float value) { return std::isfinite(value); }))
+      return wrong("lightmap.pages[{}] has a value that is not finite", p);
+  }
+  if (Status s = check_range({"lightmap.texcoord_indices", map.texcoord_indices},
+                             {"texcoords", map.texcoords.size()}, true);
+      !s.ok())
+    return s;
+  for (std::size_t t = 0; t < triangles; ++t) {
+    const std::uint32_t* corner = &map.texcoord_indices[3 * t];
+    const auto absent = std::count(corner, corner + 3, Scene::kNoTexcoord);
+    if (absent == 3) continue;
+    if (absent > 0) return wrong("lightmap: only some corners of triangle {} lie on it", t);
+    const std::uint32_t page = map.triangle_page[t];
+    if (page >= map.pages.size() || map.pages[page].empty())
+      return wrong("lightmap.triangle_page[{}] is {}, which has no image", t, page);
+  }
+  return {};
+}
+
 Status check_materials(const Scene& scene) {
   for (std::size_t m = 0; m < scene.materials.size(); ++m) {
     const Material& material = scene.materials[m];
@@ -153,6 +189,7 @@ Status check_scene(const Scene& scene) {
   Status s = check_vertices(scene);
   if (s.ok()) s = check_triangles(scene);
   if (s.ok()) s = check_materials(scene);
+  if (s.ok()) s = check_lightmap(scene);
   return s;
 }
 

@@ -39,6 +39,13 @@ constexpr Names kNames[] = {
      "vertices that lie elsewhere in the file of the illumination, which is used in its order "
      "(give "
      "both files the same vertices in one order)"},
+    {"lightmap_unusable",
+     "lightmaps that cannot be used, the scene is taken as one without (export it again, and keep "
+     "the images beside it)"},
+    {"lightmap_clipped",
+     "lightmaps whose linear images cannot be used, those of 8 bits are, which clip bright light"},
+    {"lightmap_absent",
+     "primitives without a place on the lightmap, their light is that of their vertices or 0"},
     {"material_file_missing", "material files not found, their materials are white"},
     {"material_unknown", "materials used but not defined, taken as white"},
     {"reflectance_unknown",

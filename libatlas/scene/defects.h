@@ -32,6 +32,9 @@ enum class DefectKind : std::uint8_t {
   illumination_negative,    // value kept as it is
   illumination_missing,     // vertex without a value where others have one: 0 is used
   illumination_elsewhere,   // vertex lies elsewhere in the illumination's file: value used
+  lightmap_unusable,        // lightmap whose data or images cannot be used: it is left out
+  lightmap_clipped,         // linear image of a lightmap not usable: those of 8 bits are used
+  lightmap_absent,          // primitive without a place on the lightmap: its vertices' light or 0
   material_file_missing,    // material library not found: its materials are white
   material_unknown,         // material not defined: white is used
   reflectance_unknown,      // colour not given as RGB: white, or the material's former colour

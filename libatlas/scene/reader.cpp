@@ -72,6 +72,7 @@ Result<LoadedScene> read_scene(const fs::path& path, const ReadOptions& given,
   builder.wants_rest = options.rest;
   // Shares of the stage: of the scene's file, then of that of the illumination.
   const bool other_light = !options.illumination_file.empty();
+  builder.wants_lightmap = options.lightmap && !other_light;
   constexpr double kParsed = 0.8;
   const double own = other_light ? kParsed / 2 : kParsed;
   const auto part = [&](double from, double to) {

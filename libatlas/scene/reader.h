@@ -35,6 +35,10 @@ struct ReadOptions {
   // arrays lack in any case. An export to glTF refuses a scene with a source whose positions have
   // been changed, see Scene::source.
   bool rest = false;
+  // Reads the lightmap that a glTF file names (asset.extras.lightmap) into Scene::lightmap: its
+  // linear images if all can be read, else those of 8 bits. Ignored if there is an
+  // illumination_file.
+  bool lightmap = false;
   // If true, sets encoded_textures, normals and rest, which exports that keep the scene need.
   bool keep_scene = false;
 };
@@ -49,7 +53,8 @@ struct LoadedScene {
   Scene scene = {};
   DefectReport defects = {};  // what was left out or replaced
   // Files that were read besides the scene's own and the illumination file: material libraries,
-  // buffers, textures, also those that could not be decoded. Missing files are not listed.
+  // buffers, textures, images of lightmaps, also those that could not be decoded. Missing files are
+  // not listed.
   std::vector<std::filesystem::path> files = {};
   // Existing files that the scene names, but that were not read: textures that the options leave
   // out or that no triangle uses, other maps of materials, and files that are not supported.

@@ -64,6 +64,19 @@ struct Texture {
   std::vector<std::uint8_t> encoded = {};
 };
 
+// Light in images, in place of light at the vertices. Triangles address it by texture coordinates
+// of its own.
+struct SceneLightmap {
+  // Linear RGB in the unit of Scene::illumination, finite. The origin is at the bottom left. Pages
+  // on which no triangle lies are empty.
+  std::vector<ImageF> pages = {};
+  std::vector<Vec2f> texcoords = {};  // finite
+  // 3 per triangle, into texcoords, or kNoTexcoord for all three of a triangle that has its light,
+  // if any, at its vertices.
+  std::vector<std::uint32_t> texcoord_indices = {};
+  std::vector<std::uint32_t> triangle_page = {};  // 1 per triangle, into pages
+};
+
 // Returns whether a surface can reflect this share of the light: all components are within 0..1.
 inline bool is_reflectance(const Vec3f& c) {
   return c.x >= 0 && c.y >= 0 && c.z >= 0 && c.x <= 1 && c.y <= 1 && c.z <= 1;
@@ -99,6 +112,8 @@ struct Scene {
   std::vector<Material> materials = {};               // at least one when there are triangles
   std::vector<Texture> textures = {};
   std::vector<std::string> object_names = {};
+  // Null if the file names none, or it is not asked for (ReadOptions::lightmap). Exports ignore it.
+  std::shared_ptr<const SceneLightmap> lightmap = {};
   // The glTF file itself, if asked for (ReadOptions::rest). An export to glTF that keeps the scene
   // writes it again, so triangles, positions and origin must still be those that were read: others
   // are refused. Changes to the other arrays are not written, except to light that came from

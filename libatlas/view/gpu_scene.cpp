@@ -65,14 +65,19 @@ int least_alpha(const ViewScene& scene, std::size_t texture) {
   return used ? int(std::ceil(std::max(least, 0.0f) * 255)) : 0;
 }
 
-Result<GlTexture> texture_of(const Texture& texture, int least) {
-  const Image8& image = texture.image;
+Status check_size(const std::string& what, int width, int height) {
   GLint largest = 0;
   glGetIntegerv(GL_MAX_TEXTURE_SIZE, &largest);
-  if (image.width < 1 || image.height < 1 || image.width > largest || image.height > largest)
-    return Status{ErrorCode::unsupported,
-                  fmt::format("{}: a texture of {} x {} texels; the driver takes 1 to {}",
-                              texture.path.string(), image.width, image.height, largest)};
+  if (width >= 1 && height >= 1 && width <= largest && height <= largest) return {};
+  return {ErrorCode::unsupported, fmt::format("{} of {} x {} texels; the driver takes 1 to {}",
+                                              what, width, height, largest)};
+}
+
+Result<GlTexture> texture_of(const Texture& texture, int least) {
+  const Image8& image = texture.image;
+  if (Status s = check_size(texture.path.string() + ": a texture", image.width, image.height);
+      !s.ok())
+    return s;
   const int n = image.channels;
   // Grey is expanded to three channels, since sRGB formats exist for three and four only. The last
   // one of an even number is alpha.
@@ -97,10 +102,10 @@ GLint wrap_of(TextureWrap wrap) {
   return wrap == TextureWrap::mirror ? GL_MIRRORED_REPEAT : GL_REPEAT;
 }
 
-// The smallest mip level of an atlas page that is shown. Smaller levels mix charts that lie side by
-// side, and give dark floors at a grazing angle bright specks along their borders. Measured on
-// pictures of the sample cabin, 100 to 400 pixels wide: with this limit they differ 13 to 21 % less
-// from pictures with finer sampling than without a limit.
+// The smallest mip level of an atlas page or a lightmap that is shown. Smaller levels mix charts
+// that lie side by side, and give dark floors at a grazing angle bright specks along their borders.
+// Measured on pictures of the sample cabin, 100 to 400 pixels wide: with this limit they differ 13
+// to 21 % less from pictures with finer sampling than without a limit.
 constexpr GLint kPageLevels = 3;
 
 GlSampler make_sampler(TextureWrap u, TextureWrap v) {
@@ -115,8 +120,18 @@ void make_samplers(GpuScene& gpu) {
   for (int u = 0; u < 3; ++u)
     for (int v = 0; v < 3; ++v)
       gpu.samplers[std::size_t(u)][std::size_t(v)] = make_sampler(TextureWrap(u), TextureWrap(v));
+}
+
+void make_page_sampler(GpuScene& gpu) {
   gpu.page_sampler = make_sampler(TextureWrap::clamp, TextureWrap::clamp);
   glSamplerParameteri(gpu.page_sampler.get(), GL_TEXTURE_MAX_LOD, kPageLevels);
+}
+
+GlTexture one_texel(std::uint8_t value) {
+  const std::uint8_t texel[4] = {value, value, value, 255};
+  GlTexture t = make_texture(GL_RGBA8, 1, 1);
+  glTextureSubImage2D(t.get(), 0, 0, 0, 1, 1, GL_RGBA, GL_UNSIGNED_BYTE, texel);
+  return t;
 }
 
 Status upload_textures(const ViewScene& scene, GpuScene& gpu) {
@@ -126,9 +141,42 @@ Status upload_textures(const ViewScene& scene, GpuScene& gpu) {
     gpu.textures.push_back(std::move(made.value()));
   }
   make_samplers(gpu);
-  const std::uint8_t texel[4] = {255, 255, 255, 255};
-  gpu.blank = make_texture(GL_RGBA8, 1, 1);
-  glTextureSubImage2D(gpu.blank.get(), 0, 0, 0, 1, 1, GL_RGBA, GL_UNSIGNED_BYTE, texel);
+  gpu.blank = one_texel(255);
+  return {};
+}
+
+// The light is stored as half floats, whose largest value is 65504: once scaled, most of it is
+// below 1. It has no more mip levels than are shown.
+Result<GlTexture> light_texture(const ImageF& page, double scale) {
+  if (Status s = check_size("a page of the lightmap", page.width, page.height); !s.ok()) return s;
+  const int levels =
+      std::min(int(std::bit_width(unsigned(std::max(page.width, page.height)))), kPageLevels + 1);
+  GlTexture t = make_texture(GL_RGB16F, page.width, page.height, levels);
+  constexpr int kRows = 64;  // so that little is held twice
+  std::vector<float> scaled;
+  for (int y = 0; y < page.height; y += kRows) {
+    const int rows = std::min(kRows, page.height - y);
+    const float* from = page.at(0, y);
+    scaled.assign(from, from + std::size_t(rows) * std::size_t(page.width) * 3);
+    for (float& v : scaled) v = float(std::clamp(double(v) * scale, -65504.0, 65504.0));
+    glTextureSubImage2D(t.get(), 0, 0, y, page.width, rows, GL_RGB, GL_FLOAT, scaled.data());
+  }
+  glGenerateTextureMipmap(t.get());
+  return t;
+}
+
+Status upload_lightmap(const ViewScene& scene, GpuScene& gpu) {
+  gpu.light_pages.resize(scene.lightmap->pages.size());
+  for (const ViewScene::Cluster& c : scene.clusters) {
+    if (c.look.light_page < 0) continue;
+    GlTexture& page = gpu.light_pages[std::size_t(c.look.light_page)];
+    if (page) continue;
+    Result<GlTexture> made =
+        light_texture(scene.lightmap->pages[std::size_t(c.look.light_page)], scene.light_scale);
+    if (!made.ok()) return made.status();
+    page = std::move(made.value());
+  }
+  gpu.dark = one_texel(0);
   return {};
 }
 
@@ -140,6 +188,12 @@ void GpuScene::bind_texture(const ViewScene::Look& look) const {
       look.page ? page_sampler : samplers[std::size_t(look.wrap_u)][std::size_t(look.wrap_v)];
   glBindTextureUnit(0, texture.get());
   glBindSampler(0, sampler.get());
+}
+
+void GpuScene::bind_light(const ViewScene::Look& look) const {
+  const GlTexture& page = look.light_page < 0 ? dark : light_pages[std::size_t(look.light_page)];
+  glBindTextureUnit(4, page.get());
+  glBindSampler(4, page_sampler.get());
 }
 
 Result<GpuScene> upload(const ViewScene& scene) {
@@ -156,6 +210,7 @@ Result<GpuScene> upload(const ViewScene& scene) {
   attach(gpu.lit, 0, {gpu.positions, 3, GL_FLOAT, sizeof(Vec3f)});
   attach(gpu.lit, 1, {gpu.normals, 3, GL_FLOAT, sizeof(Vec3f)});
   attach(gpu.lit, 2, {gpu.colours, 4, GL_UNSIGNED_SHORT, 8});
+  if (scene.textured() || scene.lightmap) make_page_sampler(gpu);
   if ((gpu.textured = scene.textured())) {
     gpu.texcoords = buffer_of(scene.texcoords);
     attach(gpu.lit, 3, {gpu.texcoords, 2, GL_FLOAT, sizeof(Vec2f)});
@@ -168,6 +223,11 @@ Result<GpuScene> upload(const ViewScene& scene) {
   if ((gpu.emits = !scene.emission.empty())) {
     gpu.emission = buffer_of(scene.emission);
     attach(gpu.lit, 5, {gpu.emission, 3, GL_FLOAT, sizeof(Vec3f)});
+  }
+  if ((gpu.lightmap = scene.lightmap != nullptr)) {
+    gpu.light_texcoords = buffer_of(scene.light_texcoords);
+    attach(gpu.lit, 6, {gpu.light_texcoords, 2, GL_FLOAT, sizeof(Vec2f)});
+    if (Status s = upload_lightmap(scene, gpu); !s.ok()) return s;
   }
   glVertexArrayElementBuffer(gpu.lit.get(), gpu.indices.get());
 

@@ -173,9 +173,12 @@ void Renderer::Impl::fill_block(const Camera& world_camera, const FrameLight& li
   put(b.background, background_of(options, features));
   const glm::dvec3 l = glm::normalize(to_glm(light.direction));
   put(b.light, {l, options.intensity});
-  const double ambient = scene->baked_vertices || scene->unlit == Unlit::all ? 0 : options.ambient;
+  const bool baked = scene->baked_vertices || scene->lightmap || scene->unlit == Unlit::all;
+  const double ambient = baked ? 0 : options.ambient;
   put(b.ambient, {glm::dvec3(ambient), options.exposure});
-  b.inverse[3] = float(options.baked_strength * scene->light_scale);
+  // What textures hold needs no scale: unlit ones show it as it is, the lightmap's are scaled.
+  const double scale = scene->baked_vertices ? scene->light_scale : 1;
+  b.inverse[3] = float(options.baked_strength * scale);
   if (shadow) {
     const LightFit& from = shadow->fit(nearest);
     const int other = nearest == plan.to ? plan.from : plan.to;
@@ -199,6 +202,7 @@ void Renderer::Impl::fill_block(const Camera& world_camera, const FrameLight& li
     put(b.map_x, {to_glm(axes.x), pixel_size(b) * subpixel});
     put(b.map_y, {to_glm(axes.y), 0});
   }
+  b.map_y[3] = float(options.baked_strength);
   put(b.specular, {options.specular, options.shininess, options.roughness, options.map_resolution});
   glNamedBufferSubData(frame_block.get(), 0, sizeof b, &b);
 }
@@ -281,7 +285,9 @@ void Renderer::Impl::draw_clusters(const Camera& camera, FrameStats& stats) {
     const glm::vec3 centre = to_glm(c.centre);
     if (!frustum.touches(centre, c.radius)) continue;
     ViewScene::Look look = c.look;
-    if (!features.textured && look.cutoff <= 0) look = {.one_sided = c.look.one_sided};
+    if (!features.textured && look.cutoff <= 0)
+      look = {.one_sided = c.look.one_sided, .light_page = c.look.light_page};
+    if (!features.lightmap) look.light_page = -1;
     order.push_back({look, glm::length(centre - eye) - c.radius, i});
   }
   std::sort(order.begin(), order.end());
@@ -296,6 +302,7 @@ void Renderer::Impl::draw_clusters(const Camera& camera, FrameStats& stats) {
       stats.triangles_lit += c.count / 3;
     }
     if (features.textured || look.cutoff > 0) scene->bind_texture(look);
+    if (features.lightmap) scene->bind_light(look);
     glUseProgram(look.cutoff > 0 ? holed.get() : program.get());
     if (look.cutoff > 0) glUniform1f(0, look.cutoff);
     if (look.one_sided) glEnable(GL_CULL_FACE);

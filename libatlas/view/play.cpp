@@ -69,6 +69,7 @@ Result<ViewScene> load_view(const fs::path& path, const ViewSceneOptions& option
                             const Context& context) {
   ReadOptions read;
   read.srgb_colours = options.vertices_hold_colours;
+  read.lightmap = true;
   Result<LoadedScene> loaded = read_scene(path, read, context);
   if (!loaded.ok()) return loaded.status();
   for (const std::string& line : loaded->defects.lines()) context.say("defect: " + line);

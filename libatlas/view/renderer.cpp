@@ -33,6 +33,7 @@ ShaderFeatures needed_features(const GpuScene& scene, const RenderOptions& optio
   f.some_unlit = scene.unlit == Unlit::some && !f.visibility;
   f.all_unlit = scene.unlit == Unlit::all && !f.visibility;
   f.baked_vertices = scene.baked_vertices && !f.visibility;
+  f.lightmap = scene.lightmap && !f.visibility;
   f.emission = scene.emits && !f.visibility;
   if (options.shading != Shading::unlit) switch (options.shadows) {
       case ShadowMethod::none:
@@ -357,7 +358,7 @@ std::vector<std::string> Renderer::plan() const {
                                 i.shadow->resolution(), i.shadow->resolution(), i.shadow->bits(),
                                 name_of(i.options.shadows)));
   if (!i.scene->textured) lines.push_back("no texture code: the scene has no textures");
-  if (!i.scene->baked_vertices && i.scene->unlit != Unlit::all)
+  if (!i.scene->baked_vertices && !i.scene->lightmap && i.scene->unlit != Unlit::all)
     lines.push_back("no baked light: the scene brings none");
   return lines;
 }

@@ -28,7 +28,7 @@ layout(std140, binding = 0) uniform Frame {
                                  // corner, and its change for each pixel; w: view depth is 1 / (w + w
                                  // * depth) with the first two, 1 / march's samples the third
   vec4 map_x, map_y;  // axes of a map of the current light; how far a point may be off for each unit
-                      // of view depth (world), unused
+                      // of view depth (world), factor on the lightmap
   vec4 background;  // rgb, encoded as the image is
 } frame;
 )";
@@ -114,6 +114,7 @@ std::string vertex_text(const ShaderFeatures& f) {
   if (samples_texture(f)) pass(3, "vec2", "texcoord");
   if (coloured(f) && f.baked_vertices) pass(4, "vec3", "illumination");
   if (coloured(f) && f.emission) pass(5, "vec3", "emission");
+  if (coloured(f) && f.lightmap) pass(6, "vec2", "lightcoord");
   return s + "void main() {\n" + body + "}\n";
 }
 
@@ -131,8 +132,9 @@ std::string colours_text(const ShaderFeatures& f) {
   else if (f.all_unlit)
     s += "  vec3 light = vec3(frame.inverse.w);\n";
   else
-    s += lit(f) ? "  vec3 light = vec3(0.0);\n" : "  vec3 light = vec3(1.0);\n";
+    s += lit(f) || f.lightmap ? "  vec3 light = vec3(0.0);\n" : "  vec3 light = vec3(1.0);\n";
   if (f.some_unlit && !f.baked_vertices) s += "  if (unlit) light = vec3(frame.inverse.w);\n";
+  if (f.lightmap) s += "  light += texture(lightmap, v_lightcoord).rgb * frame.map_y.w;\n";
   if (lit(f)) s += f.some_unlit ? "  if (!unlit)" : "";
   if (lit(f)) s += "  light += frame.ambient.rgb;\n";
   s += fmt::format("  vec3 own = {} * light;\n", shown);
@@ -161,6 +163,9 @@ std::string fragment_text(const ShaderFeatures& f) {
          "diffuse;\n";
   if (coloured(f) && f.baked_vertices) s += "layout(location = 4) in vec3 v_illumination;\n";
   if (coloured(f) && f.emission) s += "layout(location = 5) in vec3 v_emission;\n";
+  if (coloured(f) && f.lightmap)
+    s += "layout(location = 6) in vec2 v_lightcoord;\nlayout(binding = 4) uniform sampler2D "
+         "lightmap;\n";
   s += lit(f) ? "layout(location = 0) out uvec4 result;\n"
               : "layout(location = 0) out vec4 result;\n";
   if (lit(f)) s += kWriteSurface;
@@ -278,6 +283,7 @@ std::vector<std::string> feature_names(const ShaderFeatures& f) {
   if (f.textured) names.push_back(f.all_unlit ? "baked textures" : "diffuse textures");
   if (f.some_unlit || (f.all_unlit && !f.textured)) names.push_back("unlit materials");
   if (f.baked_vertices) names.push_back("baked vertex light");
+  if (f.lightmap) names.push_back("lightmap");
   if (f.emission) names.push_back("emission");
   if (f.visibility) names.push_back("visibility output");
   return names;

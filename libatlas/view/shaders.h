@@ -28,6 +28,7 @@ struct ShaderFeatures {
   ShadowSampling shadow = ShadowSampling::none;
   bool textured = false;        // diffuse textures
   bool baked_vertices = false;  // illumination at the vertices
+  bool lightmap = false;        // illumination in a texture, which is added to that
   // Unlit materials show their colours and textures as light (those of an exported atlas). If only
   // some are unlit, the moving light leaves them alone; if all are, it is added to them as to
   // surfaces that reflect what their colours do without the textures.

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <span>
 #include <tuple>
 
@@ -11,8 +10,9 @@
 #include "libatlas/core/degrees.h"
 #include "libatlas/core/first_index.h"
 #include "libatlas/core/glm_bridge.h"
-#include "libatlas/core/luma.h"
 #include "libatlas/scene/check_scene.h"
+#include "libatlas/view/view_geometry.h"
+#include "libatlas/view/view_light.h"
 
 namespace atlas {
 namespace {
@@ -79,46 +79,9 @@ std::vector<glm::vec3> face_normals(const Scene& scene, const Steps& steps) {
   return normals;
 }
 
-glm::vec3 unit_or(const glm::vec3& v, const glm::vec3& otherwise) {
-  // Computed in double, since the squares of small scenes' areas underflow floats.
-  const glm::dvec3 d(v);
-  const double length = glm::length(d);
-  return length > 0 ? glm::vec3(d / length) : otherwise;
-}
-
-// A vertex with more corners is the hub of thin triangles, which keep their own normals: comparing
-// each of them with all others would take quadratic time.
-constexpr std::size_t kHub = 1024;
-
-// Returns the normal of a corner: the area-weighted mean of the faces at its vertex whose normals
-// are within the crease angle of its own face's. Faces of opposite winding are flipped first.
-glm::vec3 corner_normal(std::span<const std::uint32_t> corners_there,
-                        const std::vector<glm::vec3>& faces, std::uint32_t own,
-                        float least_cosine) {
-  const glm::vec3 mine = unit_or(faces[own], glm::vec3(0, 0, 1));
-  if (corners_there.size() > kHub) return mine;
-  glm::vec3 sum(0);
-  for (const std::uint32_t corner : corners_there) {
-    const glm::vec3& other = faces[corner / 3];
-    const float cosine = glm::dot(unit_or(other, mine), mine);
-    if (std::abs(cosine) >= least_cosine) sum += cosine < 0 ? -other : other;
-  }
-  return unit_or(sum, mine);
-}
-
-// Returns the low 10 bits of a value with two zeros after each bit. Three such values interleave to
-// a Morton code.
-std::uint32_t spread(double value) {
-  std::uint32_t x = std::uint32_t(value) & 1023u;
-  x = (x | x << 16) & 0x030000ffu;
-  x = (x | x << 8) & 0x0300f00fu;
-  x = (x | x << 4) & 0x030c30c3u;
-  return (x | x << 2) & 0x09249249u;
-}
-
-// One vertex is drawn for each different corner: position, texcoord, material, and the normal in
-// steps of 1/16000.
-using CornerKey = std::array<std::uint32_t, 5>;
+// One vertex is drawn for each different corner: position, both texcoords, material, and the normal
+// in steps of 1/16000.
+using CornerKey = std::array<std::uint32_t, 6>;
 
 std::uint32_t two_words(float low, float high) {
   const auto word = [](float n) { return std::uint32_t(std::uint16_t(std::lround(n * 16000))); };
@@ -129,34 +92,6 @@ std::uint32_t two_words(float low, float high) {
 // would light up what they leave dark.
 Vec3f plain_emission(const Material& material) {
   return material.emission_textured ? Vec3f{} : material.emission;
-}
-
-double light_scale(const std::vector<Vec3f>& illumination) {
-  if (illumination.empty()) return 1;
-  std::vector<float> y;
-  y.reserve(illumination.size());
-  for (const Vec3f& e : illumination) y.push_back(luma(e.x, e.y, e.z));
-  const auto at = y.begin() + std::ptrdiff_t(double(y.size() - 1) * 0.99);
-  std::nth_element(y.begin(), at, y.end());
-  return *at > 0 ? 1.0 / *at : 1.0;
-}
-
-// Returns the box of positions without the outermost 5 % at each end of each axis: the part of a
-// scene that has detail, without the ground or sky around it.
-Box3 middle_of(const std::vector<Vec3f>& positions) {
-  glm::dvec3 low(0), high(0);
-  std::vector<float> values(positions.size());
-  for (int axis = 0; axis < 3 && !values.empty(); ++axis) {
-    for (std::size_t i = 0; i < values.size(); ++i) values[i] = to_glm(positions[i])[axis];
-    const auto at = [&](double fraction) {
-      const auto n = std::ptrdiff_t(std::lround(double(values.size() - 1) * fraction));
-      std::nth_element(values.begin(), values.begin() + n, values.end());
-      return double(values[std::size_t(n)]);
-    };
-    low[axis] = at(0.05);
-    high[axis] = at(0.95);
-  }
-  return {from_glm(low), from_glm(high)};
 }
 
 class Builder {
@@ -180,14 +115,16 @@ class Builder {
     view_.unlit = unlit == 0                        ? Unlit::none
                   : unlit == scene.triangle_count() ? Unlit::all
                                                     : Unlit::some;
+    if (scene.lightmap) use_lightmap();
   }
 
   ViewScene::Look look_of(std::uint32_t triangle) const {
     const Material& m = material_of(triangle);
     const bool unlit = is_unlit(m), one_sided = unlit && !m.double_sided;
-    if (!shows_texture(m)) return {.one_sided = one_sided};
+    const std::int32_t light = light_page_of(triangle);
+    if (!shows_texture(m)) return {.one_sided = one_sided, .light_page = light};
     const bool page = unlit && m.wrap_u == TextureWrap::clamp && m.wrap_v == TextureWrap::clamp;
-    return {m.texture, m.wrap_u, m.wrap_v, one_sided, page, cutoff_of(m)};
+    return {m.texture, m.wrap_u, m.wrap_v, one_sided, page, cutoff_of(m), light};
   }
 
   // Returns the triangles grouped by look, and within each look along a curve that keeps neighbours
@@ -207,8 +144,7 @@ class Builder {
       if (!steps_.go_on(t, codes.size(), 0.15, 0.2)) return {};
       glm::dvec3 sum(0);
       for (int k = 0; k < 3; ++k) sum += to_dvec(scene_.positions[scene_.indices[3 * t + k]]);
-      const glm::dvec3 q = (sum / 3.0 - low) * scale;
-      codes[t] = spread(q.x) | spread(q.y) << 1 | spread(q.z) << 2;
+      codes[t] = morton_code((sum / 3.0 - low) * scale);
     }
     std::sort(triangles.begin(), triangles.end(), [&](std::uint32_t a, std::uint32_t b) {
       const auto key = [&](std::uint32_t t) { return std::tuple(look_of(t), codes[t], t); };
@@ -230,11 +166,11 @@ class Builder {
       for (int k = 0; k < 3; ++k) view_.indices.push_back(vertex(t, k));
       view_.clusters.back().count += 3;
     }
-    for (ViewScene::Cluster& c : view_.clusters) enclose(c);
+    for (ViewScene::Cluster& c : view_.clusters) enclose(view_, c);
     add_casters();
     if (steps_.cancelled()) return std::move(view_);
     measure();
-    view_.light_scale = light_scale(view_.illumination);
+    view_.light_scale = light_scale_of(view_);
     const auto full = float(1 / view_.light_scale);
     for (const std::uint32_t v : on_pages_) view_.illumination[v] = {full, full, full};
     steps_.done();
@@ -269,6 +205,28 @@ class Builder {
     return *hold_light_ && (m.unlit || shows_texture(m));
   }
 
+  // Leaves out the lightmap where no triangle shows it, and the vertices' light where all do.
+  void use_lightmap() {
+    bool some = false, all = true;
+    for (std::uint32_t t = 0; t < scene_.triangle_count(); ++t) {
+      if (is_invisible(material_of(t))) continue;
+      const bool mapped = light_page_of(t) >= 0;
+      some |= mapped;
+      all &= mapped;
+    }
+    if (!some) return;
+    view_.lightmap = scene_.lightmap;
+    lit_ = lit_ && !all;
+  }
+
+  // Returns the triangle's page of the lightmap, or -1. Unlit materials show their own light.
+  std::int32_t light_page_of(std::uint32_t triangle) const {
+    if (!scene_.lightmap || is_unlit(material_of(triangle)) ||
+        scene_.lightmap->texcoord_indices[3 * std::size_t(triangle)] == kNone)
+      return -1;
+    return std::int32_t(scene_.lightmap->triangle_page[triangle]);
+  }
+
   // Returns the colour that textures multiply. A texture that only the caller calls unlit shows
   // light, to which the vertices' own adds nothing.
   Vec3f colour_of(const Material& m, std::uint32_t position) const {
@@ -283,9 +241,11 @@ class Builder {
     const glm::vec3 n = corner_normal(corners_at_[welded_[p]], faces_, t, cosine_);
     const std::uint32_t material = scene_.triangle_material[t],
                         texcoord = textured_ ? scene_.texcoord_indices[corner] : kNone;
+    const bool mapped = light_page_of(t) >= 0;
+    const std::uint32_t light_texcoord = mapped ? scene_.lightmap->texcoord_indices[corner] : kNone;
     const bool own_values = scene_.lit() || !scene_.unlit_colours.empty();
-    const CornerKey key{own_values ? p : welded_[p], texcoord, material, two_words(n.x, n.y),
-                        two_words(n.z, 0)};
+    const CornerKey key{own_values ? p : welded_[p], texcoord,         light_texcoord, material,
+                        two_words(n.x, n.y),         two_words(n.z, 0)};
     std::uint32_t& vertex =
         first_.find(hash_words(key), [&](std::uint32_t v) { return keys_[v] == key; });
     if (vertex != kNoIndex) return vertex;
@@ -299,26 +259,12 @@ class Builder {
     if (view_.unlit == Unlit::some) view_.unlit_vertices.push_back(is_unlit(m));
     if (textured_)
       view_.texcoords.push_back(texcoord == kNone ? Vec2f{} : scene_.texcoords[texcoord]);
-    if (lit_) view_.illumination.push_back(scene_.illumination[p]);
+    if (view_.lightmap)
+      view_.light_texcoords.push_back(mapped ? scene_.lightmap->texcoords[light_texcoord]
+                                             : Vec2f{});
+    if (lit_) view_.illumination.push_back(mapped ? Vec3f{} : scene_.illumination[p]);
     if (lit_ && is_unlit(m) && shows_texture(m)) on_pages_.push_back(vertex);
     return vertex;
-  }
-
-  // Computes a sphere around the centre of the cluster's box.
-  void enclose(ViewScene::Cluster& c) const {
-    constexpr float kMost = std::numeric_limits<float>::max();
-    glm::vec3 low(kMost), high(-kMost);
-    for (std::uint32_t i = c.first; i < c.first + c.count; ++i) {
-      low = glm::min(low, to_glm(view_.positions[view_.indices[i]]));
-      high = glm::max(high, to_glm(view_.positions[view_.indices[i]]));
-    }
-    const glm::vec3 centre = low * 0.5f + high * 0.5f;  // high - low may leave the range of float
-    c.centre = from_glm(centre);
-    double radius = 0;  // in double, since squares of small lengths underflow floats
-    for (std::uint32_t i = c.first; i < c.first + c.count; ++i)
-      radius = std::max(
-          radius, glm::length(to_dvec(view_.positions[view_.indices[i]]) - glm::dvec3(centre)));
-    c.radius = float(radius * 1.0001);  // margin for rounding
   }
 
   void add_casters() {

@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <memory>
 #include <optional>
 #include <vector>
 
@@ -28,8 +29,10 @@ struct ViewScene {
   std::vector<Vec3f> colours = {};
   std::vector<Vec3f> emission = {};  // of the material, unless a texture shapes it; 1 is white
   std::vector<Vec2f> texcoords = {};
-  // Linear, as given; 1 / light_scale where a texture shows light, to which it adds nothing.
+  // Linear, as given; 1 / light_scale where a texture shows light, to which it adds nothing; 0
+  // where the lightmap has the light.
   std::vector<Vec3f> illumination = {};
+  std::vector<Vec2f> light_texcoords = {};        // on the lightmap's pages
   std::vector<std::uint8_t> unlit_vertices = {};  // 1 or 0; empty unless `unlit` is `some`
   std::vector<std::uint32_t> indices = {};
 
@@ -42,6 +45,7 @@ struct ViewScene {
     bool one_sided = false;
     bool page = false;
     float cutoff = 0;
+    std::int32_t light_page = -1;  // of the lightmap; -1: light of the vertices, if they have any
     auto operator<=>(const Look&) const = default;
   };
 
@@ -61,6 +65,8 @@ struct ViewScene {
   std::vector<std::uint32_t> caster_indices = {};
 
   std::vector<Texture> textures = {};
+  // Its pages hold light that is added to that of the vertices. Null unless a cluster shows some.
+  std::shared_ptr<const SceneLightmap> lightmap = {};
   Unlit unlit = Unlit::none;
   Box3 bounds = {};   // of the positions that triangles use
   Box3 middle = {};   // of these without the 5 % that lie outermost at each end of each axis
@@ -74,7 +80,7 @@ struct ViewScene {
 
   std::size_t triangle_count() const { return indices.size() / 3; }
   bool textured() const { return !texcoords.empty(); }
-  bool baked() const { return !illumination.empty() || unlit == Unlit::all; }
+  bool baked() const { return !illumination.empty() || lightmap || unlit == Unlit::all; }
 };
 
 struct ViewSceneOptions {

@@ -340,6 +340,7 @@ Result<LoadedScene> SceneBuilder::finish(const ReadOptions& options, const Conte
   if (!unlit_colours.empty()) unlit_colours.resize(scene.positions.size(), {1, 1, 1});
   scene.unlit_colours = std::move(unlit_colours);
   scene.vertex_opacity = std::move(vertex_opacity);
+  scene.lightmap = std::move(lightmap);
   loaded.view = view;
   loaded.defects = std::move(defects);
   if (context.cancelled()) return Status::cancelled();

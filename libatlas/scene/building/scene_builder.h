@@ -79,9 +79,11 @@ class SceneBuilder {
   std::vector<std::int32_t> texture_numbers;  // once loaded: of each in Scene::textures, or -1
   std::vector<std::string> objects;
   DefectReport defects;
-  bool wants_textures = true;                // false: `textures` need not hold any bytes
-  bool wants_normals = false;                // false: normals are ignored, whatever they hold
-  bool wants_rest = false;                   // ReadOptions::rest
+  bool wants_textures = true;                     // false: `textures` need not hold any bytes
+  bool wants_normals = false;                     // false: normals are ignored, whatever they hold
+  bool wants_rest = false;                        // ReadOptions::rest
+  bool wants_lightmap = false;                    // ReadOptions::lightmap
+  std::shared_ptr<const SceneLightmap> lightmap;  // Scene::lightmap
   std::shared_ptr<GltfSource> source;        // Scene::source; if set, all of `textures` are kept
   NamedFiles named_files;                    // finds material libraries and their textures
   LossCounts not_read;                       // Scene::not_read, without the materials' MTL lines

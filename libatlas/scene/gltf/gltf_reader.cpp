@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <glm/mat4x4.hpp>
 #include <map>
 
@@ -11,6 +12,7 @@
 #include "libatlas/scene/gltf/gltf_colours.h"
 #include "libatlas/scene/gltf/gltf_file.h"
 #include "libatlas/scene/gltf/gltf_instances.h"
+#include "libatlas/scene/gltf/gltf_lightmap.h"
 #include "libatlas/scene/gltf/gltf_losses.h"
 #include "libatlas/scene/gltf/gltf_materials.h"
 #include "libatlas/scene/gltf/gltf_pose.h"
@@ -42,12 +44,16 @@ Vec3f direction(const glm::dvec3& v) {
 class GltfParser {
  public:
   GltfParser(const tinygltf::Model& model, SceneBuilder& builder, const Context& context)
-      : model_(model), builder_(builder), context_(context), pose_(model, builder.wants_normals) {}
+      : model_(model),
+        builder_(builder),
+        context_(context),
+        pose_(model, builder.wants_normals),
+        lightmap_(model, builder) {}
 
   Status run() {
     if (Status s = add_gltf_materials(model_, builder_); !s.ok()) return s;
     on_path_.assign(model_.nodes.size(), false);
-    const std::vector<int> shown = roots();
+    const std::vector<int> shown = gltf_roots(model_);
     if (gltf_shown_size(model_, shown) > kMaxShown) return too_much();
     if (builder_.source) builder_.source->roots = shown;
     for (const int node : shown) {
@@ -63,10 +69,12 @@ class GltfParser {
       }
     }
     if (builder_.objects.empty()) return nothing_shown();
+    lightmap_.load(context_);
     if (coloured_ != 0) finish_values();
     builder_.check_positions(
         [&](std::size_t i) { return fmt::format("{}: vertex {}", builder_.file, i); });
     add_faces();
+    lightmap_.finish();
     return {};
   }
 
@@ -83,6 +91,7 @@ class GltfParser {
     std::size_t texcoord_base = 0, texcoord_count = 0;
     bool has_texcoords = false, mirrored = false;
     std::uint32_t material = 0, object = 0;
+    GltfLightmap::Part light;
     int number = 0;  // index in its mesh
     std::string name;
   };
@@ -107,23 +116,6 @@ class GltfParser {
     return {ErrorCode::bad_input,
             fmt::format("{}: no triangle to work on: {} (export the scene as a triangle mesh)",
                         builder_.file, why)};
-  }
-
-  // Returns those of the default scene, or of the first; without scenes, all nodes without parent.
-  std::vector<int> roots() const {
-    const int chosen = model_.defaultScene >= 0 ? model_.defaultScene : 0;
-    if (std::size_t(chosen) < model_.scenes.size()) return model_.scenes[chosen].nodes;
-    std::vector<bool> child(model_.nodes.size(), false);
-    for (const tinygltf::Node& node : model_.nodes) {
-      for (const int c : node.children) {
-        if (c >= 0 && std::size_t(c) < child.size()) child[c] = true;
-      }
-    }
-    std::vector<int> result;
-    for (std::size_t i = 0; i < child.size(); ++i) {
-      if (!child[i]) result.push_back(static_cast<int>(i));
-    }
-    return result;
   }
 
   // What a node inherits from the nodes above it.
@@ -232,7 +224,9 @@ class GltfParser {
         at->second = *added;
       }
       primitive.vertices = at->second;
-      if (const RawMaterial& m = builder_.materials[primitive.material]; m.unlit && m.texture >= 0)
+      const RawMaterial& m = builder_.materials[primitive.material];
+      primitive.light = lightmap_.part_of(raw, m.unlit, primitive.name);
+      if (m.unlit && m.texture >= 0)
         add_gltf_unlit_colours(model_, raw, {at->second.first, at->second.count}, builder_);
       if (Status s = add_texcoords(raw, primitive); !s.ok()) return s;
       if (Status s = add_corners(raw, mode, primitive); !s.ok()) return s;
@@ -339,6 +333,7 @@ class GltfParser {
       while (next < lit_ranges_.size() && i >= lit_ranges_[next].second) ++next;
       if (next < lit_ranges_.size() && i >= lit_ranges_[next].first) continue;
       builder_.illumination[i] = {};
+      if (lightmap_.loaded()) continue;  // it holds the light, or says where it is missing
       builder_.defects.add(DefectKind::illumination_missing,
                            [&] { return fmt::format("{}: vertex {}", builder_.file, i); });
     }
@@ -372,8 +367,10 @@ class GltfParser {
 
   void add_face(const Primitive& p, std::size_t t) {
     std::int64_t vertices[3], uvs[3], normals[3];
+    std::array<std::uint32_t, 3> corners;
     for (int c = 0; c < 3; ++c) {
       const std::uint32_t local = p.corners[3 * t + (p.mirrored ? 2 - c : c)];
+      corners[std::size_t(c)] = local;
       vertices[c] = local == kOutside ? -1 : static_cast<std::int64_t>(p.vertices.first + local);
       normals[c] = static_cast<std::int64_t>(p.vertices.first_normal + local);
       // A larger index would reach the texture coordinates of other primitives.
@@ -381,9 +378,11 @@ class GltfParser {
                                         : static_cast<std::int64_t>(builder_.texcoords.size());
     }
     const std::span<const std::int64_t> all_uvs(uvs), all_normals(normals);
+    const std::size_t before = builder_.triangle_count();
     builder_.add_face({vertices, p.has_texcoords ? all_uvs : all_uvs.first(0),
                        p.vertices.normals ? all_normals : all_normals.first(0)},
                       [&] { return fmt::format("{}: {} triangle {}", builder_.file, p.name, t); });
+    if (builder_.triangle_count() > before) lightmap_.add_triangle(p.light, corners);
   }
 
   // Shares of the time until the model is loaded, and until faces are added.
@@ -394,6 +393,7 @@ class GltfParser {
   SceneBuilder& builder_;
   const Context& context_;
   GltfPose pose_;
+  GltfLightmap lightmap_;
   std::vector<bool> on_path_;  // 1 per node: from the root to the current one
   std::size_t visits_ = 0, nodes_visited_ = 0;
   std::map<int, std::pair<std::size_t, std::size_t>> texcoords_;  // first and count, by accessor

@@ -94,6 +94,19 @@ bool gltf_hidden(const tinygltf::Node& node) {
   return visible.IsBool() && !visible.Get<bool>();
 }
 
+std::vector<int> gltf_roots(const tinygltf::Model& model) {
+  const int chosen = model.defaultScene >= 0 ? model.defaultScene : 0;
+  if (std::size_t(chosen) < model.scenes.size()) return model.scenes[std::size_t(chosen)].nodes;
+  std::vector<bool> child(model.nodes.size(), false);
+  for (const tinygltf::Node& node : model.nodes)
+    for (const int c : node.children)
+      if (c >= 0 && std::size_t(c) < child.size()) child[std::size_t(c)] = true;
+  std::vector<int> result;
+  for (std::size_t i = 0; i < child.size(); ++i)
+    if (!child[i]) result.push_back(static_cast<int>(i));
+  return result;
+}
+
 double gltf_shown_size(const tinygltf::Model& model, std::span<const int> roots) {
   ShownSize size(model);
   if (model.nodes.empty()) return size.of_all_meshes();

@@ -1,7 +1,8 @@
-// Internal: computes how much a glTF file shows before its data are read.
+// Internal: finds what a glTF file shows, and how much that is, before its data are read.
 #pragma once
 
 #include <span>
+#include <vector>
 
 #include "libatlas/scene/gltf/gltf_file.h"
 
@@ -9,6 +10,10 @@ namespace atlas {
 
 // Returns whether KHR_node_visibility hides the node, and with it all nodes below it.
 bool gltf_hidden(const tinygltf::Node& node);
+
+// Returns the root nodes of the default scene, or of the first; without scenes, all nodes without a
+// parent.
+std::vector<int> gltf_roots(const tinygltf::Model& model);
 
 // Returns the sum of vertices and triangle corners of all meshes, each counted as often as `roots`
 // and the nodes below them show it, or once if the file has no nodes. Takes the counts that the

@@ -1,0 +1,79 @@
+#include "libatlas/view/view_light.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <vector>
+
+#include "libatlas/core/luma.h"
+
+namespace atlas {
+namespace {
+
+// The two texels of a row or column between whose centres a place lies.
+struct Between {
+  int low, high;
+  float share;  // of the upper one
+};
+
+Between between(float t, int size) {
+  const float at = std::clamp(t * float(size) - 0.5f, 0.0f, float(size - 1));
+  const int low = std::min(int(at), size - 1);
+  return {low, std::min(low + 1, size - 1), at - float(low)};
+}
+
+float luma_of(const Vec3f& e) {
+  return luma(e.x, e.y, e.z);
+}
+
+// Appends the light of each vertex on the lightmap.
+void add_mapped(const ViewScene& view, std::vector<float>& lumas) {
+  std::vector<bool> known(view.positions.size());
+  for (const ViewScene::Cluster& c : view.clusters) {
+    if (c.look.light_page < 0) continue;
+    const ImageF& page = view.lightmap->pages[std::size_t(c.look.light_page)];
+    for (std::uint32_t i = c.first; i < c.first + c.count; ++i) {
+      const std::uint32_t v = view.indices[i];
+      if (known[v]) continue;
+      known[v] = true;
+      lumas.push_back(luma_of(light_on_page(page, view.light_texcoords[v])));
+    }
+  }
+}
+
+// Appends the light at each vertex that is not on the lightmap.
+void add_others(const ViewScene& view, std::vector<float>& lumas) {
+  std::vector<bool> mapped(view.lightmap ? view.positions.size() : 0);
+  for (const ViewScene::Cluster& c : view.clusters)
+    for (std::uint32_t i = c.first; c.look.light_page >= 0 && i < c.first + c.count; ++i)
+      mapped[view.indices[i]] = true;
+  for (std::size_t v = 0; v < view.illumination.size(); ++v)
+    if (mapped.empty() || !mapped[v]) lumas.push_back(luma_of(view.illumination[v]));
+}
+
+}  // namespace
+
+Vec3f light_on_page(const ImageF& page, const Vec2f& uv) {
+  const Between x = between(uv.x, page.width), y = between(uv.y, page.height);
+  float rgb[3];
+  for (int c = 0; c < 3; ++c) {
+    const auto row = [&](int r) {
+      return std::lerp(page.at(x.low, r)[c], page.at(x.high, r)[c], x.share);
+    };
+    rgb[c] = std::lerp(row(y.low), row(y.high), y.share);
+  }
+  return {rgb[0], rgb[1], rgb[2]};
+}
+
+double light_scale_of(const ViewScene& view) {
+  std::vector<float> lumas;
+  lumas.reserve(view.positions.size());
+  if (view.lightmap) add_mapped(view, lumas);
+  add_others(view, lumas);
+  if (lumas.empty()) return 1;
+  const auto at = lumas.begin() + std::ptrdiff_t(double(lumas.size() - 1) * 0.99);
+  std::nth_element(lumas.begin(), at, lumas.end());
+  return *at > 0 ? 1.0 / *at : 1.0;
+}
+
+}  // namespace atlas
