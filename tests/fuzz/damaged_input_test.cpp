@@ -158,6 +158,28 @@ std::string glb() {
   return g.glb();
 }
 
+// Two squares with materials, on two pages of a lightmap that are one image.
+std::string lightmapped_glb() {
+  test::Gltf g;
+  const int positions = g.floats(test::kSquare, "VEC3", 3);
+  const int uvs = g.floats({0, 0, 1, 0, 1, 1, 0, 1}, "VEC2", 2);
+  const int indices = g.indices(std::vector<std::uint16_t>{0, 1, 2, 0, 2, 3});
+  const auto square = [&](int page) {
+    return json{{"attributes", {{"POSITION", positions}, {"TEXCOORD_1", uvs}}},
+                {"indices", indices},
+                {"material", page},
+                {"extras", {{"lightmap", page}}}};
+  };
+  g.single(square(0));
+  g.j["meshes"][0]["primitives"].push_back(square(1));
+  g.j["materials"] = {{{"name", "a"}}, {{"name", "b"}, {"doubleSided", true}}};
+  g.j["asset"]["extras"]["lightmap"] = {{"images", {"page.hdr", "page.hdr"}},
+                                        {"linear", {"page.hdr", "page.hdr"}},
+                                        {"texCoord", 1},
+                                        {"white", 2.5}};
+  return g.glb();
+}
+
 using Input = std::vector<std::uint8_t>;
 
 // Returns the text after up to `most` changes, copies, removals or insertions of some bytes. What
@@ -255,6 +277,12 @@ INSTANTIATE_TEST_SUITE_P(Formats, DamagedFiles,
                                            Seed{"stl", kStl}, Seed{"wrl", kWrl},
                                            Seed{"glb", glb()}),
                          [](const auto& test) { return test.param.extension; });
+
+TEST(DamagedLightmaps, AreReadOrLeftOut) {
+  const Seed seed{"glb", lightmapped_glb()};
+  EXPECT_GT(accepted_of(seed, {500, 4, 8}, test::fuzz_reader), 20);
+  EXPECT_GT(accepted_of(seed, {200, 4, 9}, test::fuzz_view), 2);
+}
 
 const std::string kCsv = R"(name,width,height
 # sizes

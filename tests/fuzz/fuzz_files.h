@@ -25,7 +25,8 @@ class FuzzFolder {
 
   const std::filesystem::path& path() const { return path_; }
 
-  // Writes scene.EXTENSION and, after a line `%%`, the second files. Returns the scene's path.
+  // Writes scene.EXTENSION and, after a line `%%`, the second files; and an image of light,
+  // page.hdr, if the scene says that it has a lightmap. Returns the scene's path.
   std::filesystem::path write_scene(FuzzBytes bytes, const std::string& extension) const {
     const std::string_view all(reinterpret_cast<const char*>(bytes.data()), bytes.size());
     const std::size_t cut = all.find("\n%%\n");
@@ -33,6 +34,9 @@ class FuzzFolder {
       write("second.mtl", all.substr(cut + 4));
       write("second.bin", all.substr(cut + 4));
     }
+    if (all.find("lightmap") != all.npos)
+      write("page.hdr",
+            "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 2 +X 3\n" + std::string(24, '\x80'));
     return write("scene." + extension, all.substr(0, cut));
   }
 

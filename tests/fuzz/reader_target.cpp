@@ -11,6 +11,7 @@ FuzzResult fuzz_reader(FuzzBytes bytes, const std::string& extension) {
   options.encoded_textures = choice & 2;
   options.normals = choice & 4;
   options.rest = choice & 8;
+  options.lightmap = choice & 16;
   Context context;
   context.threads = 1;
   const FuzzFolder folder;

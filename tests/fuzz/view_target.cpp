@@ -35,11 +35,16 @@ std::string judge(const ViewScene& view, unsigned choice) {
     if (!values->empty() && values->size() != count) return "an array of another length";
   if (!finite(view.positions) || !finite(view.normals)) return "a vertex that is not finite";
   if (!finite(view.illumination)) return "light that is not finite";
+  for (const Vec2f& uv : view.light_texcoords)
+    if (!std::isfinite(uv.x) || !std::isfinite(uv.y)) return "a texcoord that is not finite";
   if (!(view.light_scale > 0) || !std::isfinite(view.light_scale))
     return "a scale of light that is not finite";
   for (const ViewScene::Cluster& c : view.clusters) {
     if (!std::isfinite(c.radius)) return "a cluster without bounds";
     if (c.look.texture >= int(view.textures.size())) return "a texture that there is not";
+    if (c.look.light_page >= 0 && (!view.lightmap || view.light_texcoords.size() != count ||
+                                   view.lightmap->pages[std::size_t(c.look.light_page)].empty()))
+      return "a page of the lightmap that there is not";
   }
   const Vec3d up = choice & 8 ? Vec3d{0, 1, 0} : Vec3d{0, 0, 1};
   // Looking for a point inside takes seconds under sanitizers.
@@ -54,6 +59,7 @@ FuzzResult fuzz_view(FuzzBytes bytes, const std::string& extension) {
   const unsigned choice = sum_of(bytes);
   ReadOptions read;
   ViewSceneOptions look;
+  read.lightmap = true;
   read.srgb_colours = look.vertices_hold_colours = choice & 1;
   if (choice & 2) look.textures_hold_light = choice & 4;
   look.cluster_triangles = 2;

@@ -6,7 +6,9 @@
 
 #include <functional>
 #include <limits>
+#include <memory>
 #include <string>
+#include <utility>
 
 namespace atlas {
 namespace {
@@ -28,6 +30,22 @@ void add_texture(Scene& scene) {
   scene.normal_indices = {0, 0, 0, Scene::kNoNormal, Scene::kNoNormal, Scene::kNoNormal};
 }
 
+// Returns a lightmap of the square's two triangles, of which only the first lies on it.
+SceneLightmap lightmap() {
+  SceneLightmap map;
+  map.pages = {ImageF(2, 2, 3, 9), ImageF()};
+  map.texcoords = {{0, 0}, {1, 1}};
+  map.texcoord_indices = {0, 1, 1, Scene::kNoTexcoord, Scene::kNoTexcoord, Scene::kNoTexcoord};
+  map.triangle_page = {0, 1};
+  return map;
+}
+
+void spoil_lightmap(Scene& scene, const std::function<void(SceneLightmap&)>& spoil) {
+  SceneLightmap map = lightmap();
+  spoil(map);
+  scene.lightmap = std::make_shared<const SceneLightmap>(std::move(map));
+}
+
 TEST(CheckScene, CompletesPositionsAndIndices) {
   Scene scene = square();
   EXPECT_FALSE(check_scene(scene).ok());  // triangles have no material
@@ -36,6 +54,7 @@ TEST(CheckScene, CompletesPositionsAndIndices) {
   EXPECT_EQ(scene.triangle_material, std::vector<std::uint32_t>(2, 0));
   EXPECT_EQ(scene.triangle_object, std::vector<std::uint32_t>(2, 0));
   add_texture(scene);
+  spoil_lightmap(scene, [](SceneLightmap&) {});
   EXPECT_TRUE(check_scene(scene).ok()) << check_scene(scene).message();
 }
 
@@ -126,6 +145,28 @@ TEST(CheckScene, NamesArrayAndElement) {
        [](Scene& s) {
          s.textures[0] = {{}, {}, {0xff, 0xd8}};
        }},
+      {"lightmap has 5 texcoord_indices and 2 pages for 2 triangles",
+       [](Scene& s) { spoil_lightmap(s, [](SceneLightmap& m) { m.texcoord_indices.resize(5); }); }},
+      {"lightmap has 6 texcoord_indices and 0 pages",
+       [](Scene& s) { spoil_lightmap(s, [](SceneLightmap& m) { m.triangle_page.clear(); }); }},
+      {"lightmap.texcoords[1] is not finite",
+       [=](Scene& s) { spoil_lightmap(s, [=](SceneLightmap& m) { m.texcoords[1].x = nan; }); }},
+      {"lightmap.texcoord_indices[1] is 2",
+       [](Scene& s) { spoil_lightmap(s, [](SceneLightmap& m) { m.texcoord_indices[1] = 2; }); }},
+      {"only some corners of triangle 1",
+       [](Scene& s) { spoil_lightmap(s, [](SceneLightmap& m) { m.texcoord_indices[4] = 0; }); }},
+      {"lightmap.triangle_page[0] is 2",
+       [](Scene& s) { spoil_lightmap(s, [](SceneLightmap& m) { m.triangle_page[0] = 2; }); }},
+      {"lightmap.triangle_page[0] is 1, which has no image",
+       [](Scene& s) { spoil_lightmap(s, [](SceneLightmap& m) { m.triangle_page[0] = 1; }); }},
+      {"lightmap.pages[1] is 2 x 2 with 4 channels",
+       [](Scene& s) {
+         spoil_lightmap(s, [](SceneLightmap& m) { m.pages[1] = ImageF(2, 2, 4, 1); });
+       }},
+      {"lightmap.pages[0] is 2 x 2 with 3 channels (must be 3), and holds 7",
+       [](Scene& s) { spoil_lightmap(s, [](SceneLightmap& m) { m.pages[0].texels.resize(7); }); }},
+      {"lightmap.pages[0] has a value that is not finite",
+       [=](Scene& s) { spoil_lightmap(s, [=](SceneLightmap& m) { m.pages[0].texels[3] = nan; }); }},
       {"the image of textures[0] is 0 x 0", [](Scene& s) { s.textures[0].image = {}; }},
   };
   for (const auto& c : cases) {

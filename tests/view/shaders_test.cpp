@@ -26,6 +26,7 @@ TEST(Shaders, NothingIsCompiledThatIsNotUsed) {
           f.textured = textured;
           f.baked_vertices = baked;
           f.emission = textured != baked;
+          f.lightmap = !baked;
           const ShaderText t = shader_text(f);
           const bool lit = shading != Shading::unlit;
           const bool shadows = lit && shadow != ShadowSampling::none;
@@ -33,6 +34,9 @@ TEST(Shaders, NothingIsCompiledThatIsNotUsed) {
           EXPECT_EQ(has(t.vertex, "v_texcoord"), textured);
           EXPECT_EQ(has(t.vertex, "v_illumination"), baked);
           EXPECT_EQ(has(t.fragment, "v_illumination"), baked);
+          EXPECT_EQ(has(t.vertex, "v_lightcoord"), f.lightmap);
+          EXPECT_EQ(has(t.fragment, "sampler2D lightmap"), f.lightmap);
+          EXPECT_EQ(has(t.fragment, "texture(lightmap, v_lightcoord)"), f.lightmap);
           EXPECT_EQ(has(t.vertex, "v_emission"), f.emission);
           EXPECT_EQ(has(t.fragment, "v_emission"), f.emission);
           EXPECT_EQ(has(t.vertex, "v_normal"), lit);
@@ -42,8 +46,8 @@ TEST(Shaders, NothingIsCompiledThatIsNotUsed) {
           // The first pass uses nothing of the moving light, the second nothing of the materials.
           for (const char* word : {"visibility_at(", "frame.light", "specular("})
             EXPECT_FALSE(has(body_of(t.fragment), word)) << word;
-          for (const char* word :
-               {"diffuse", "v_illumination", "v_colour", "v_emission", "v_texcoord"})
+          for (const char* word : {"diffuse", "v_illumination", "v_colour", "v_emission",
+                                   "v_texcoord", "v_lightcoord"})
             EXPECT_FALSE(has(t.lighting_fragment, word)) << word;
           const std::string& second = t.lighting_fragment;
           const bool march = shadows && shadow == ShadowSampling::march;
@@ -75,9 +79,10 @@ TEST(Shaders, VisibilityNeedsNoColours) {
   f.visibility = true;
   f.shadow = ShadowSampling::one;
   f.textured = true;
-  f.baked_vertices = f.emission = true;
+  f.baked_vertices = f.emission = f.lightmap = true;
   const ShaderText t = shader_text(f);
-  for (const char* word : {"v_colour", "v_texcoord", "v_illumination", "v_emission", "diffuse;"}) {
+  for (const char* word :
+       {"v_colour", "v_texcoord", "v_illumination", "v_emission", "v_lightcoord", "diffuse;"}) {
     EXPECT_FALSE(has(t.fragment, word)) << word;
     EXPECT_FALSE(has(t.vertex, word)) << word;
   }
@@ -93,6 +98,8 @@ TEST(Shaders, NamesTellWhatIsIn) {
   f.textured = true;
   EXPECT_EQ(feature_names(f),
             (std::vector<std::string>{"ward", "march", "pcf 5", "diffuse textures"}));
+  f.lightmap = true;
+  EXPECT_EQ(feature_names(f).back(), "lightmap");
 }
 
 }  // namespace
