@@ -45,7 +45,8 @@ constexpr Names kNames[] = {
     {"lightmap_clipped",
      "lightmaps whose linear images cannot be used, those of 8 bits are, which clip bright light"},
     {"lightmap_absent",
-     "primitives without a place on the lightmap, their light is that of their vertices or 0"},
+     "primitives or faces without a place on the lightmap, their light is that of their vertices "
+     "or 0"},
     {"material_file_missing", "material files not found, their materials are white"},
     {"material_unknown", "materials used but not defined, taken as white"},
     {"reflectance_unknown",

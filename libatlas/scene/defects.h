@@ -34,19 +34,19 @@ enum class DefectKind : std::uint8_t {
   illumination_elsewhere,   // vertex lies elsewhere in the illumination's file: value used
   lightmap_unusable,        // lightmap whose data or images cannot be used: it is left out
   lightmap_clipped,         // linear image of a lightmap not usable: those of 8 bits are used
-  lightmap_absent,          // primitive without a place on the lightmap: its vertices' light or 0
-  material_file_missing,    // material library not found: its materials are white
-  material_unknown,         // material not defined: white is used
-  reflectance_unknown,      // colour not given as RGB: white, or the material's former colour
-  reflectance_beyond_one,   // a component is below 0 or above 1: value kept as it is
-  texture_missing,          // image not found: the material's plain diffuse colour is used
-  texture_unreadable,       // image that cannot be decoded: likewise
-  texture_clipped,          // image of linear values with some beyond 0 to 1: these are clipped
-  texture_option_ignored,   // a texture option that has no counterpart here
-  node_hidden,              // node that its file hides: left out
-  skin_repeated,            // node or instance whose joints put its mesh where another one is: kept
-  text_not_utf8,            // byte of a glTF file's JSON that is not UTF-8: replaced by '?'
-  element_ignored,          // lines, points, curves, unknown keywords: nothing to bake
+  lightmap_absent,        // primitive or face that is not on the lightmap: its vertices' light or 0
+  material_file_missing,  // material library not found: its materials are white
+  material_unknown,       // material not defined: white is used
+  reflectance_unknown,    // colour not given as RGB: white, or the material's former colour
+  reflectance_beyond_one,  // a component is below 0 or above 1: value kept as it is
+  texture_missing,         // image not found: the material's plain diffuse colour is used
+  texture_unreadable,      // image that cannot be decoded: likewise
+  texture_clipped,         // image of linear values with some beyond 0 to 1: these are clipped
+  texture_option_ignored,  // a texture option that has no counterpart here
+  node_hidden,             // node that its file hides: left out
+  skin_repeated,           // node or instance whose joints put its mesh where another one is: kept
+  text_not_utf8,           // byte of a glTF file's JSON that is not UTF-8: replaced by '?'
+  element_ignored,         // lines, points, curves, unknown keywords: nothing to bake
 };
 
 // One line of text for people: what the kind means and what was done about it.

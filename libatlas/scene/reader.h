@@ -35,9 +35,9 @@ struct ReadOptions {
   // arrays lack in any case. An export to glTF refuses a scene with a source whose positions have
   // been changed, see Scene::source.
   bool rest = false;
-  // Reads the lightmap that a glTF file names (asset.extras.lightmap) into Scene::lightmap: its
-  // linear images if all can be read, else those of 8 bits. Ignored if there is an
-  // illumination_file.
+  // Reads the lightmap that a file names as libatlas writes it (glTF in asset.extras.lightmap, OBJ
+  // in a comment) into Scene::lightmap: its linear images if all can be read, else those of 8 bits.
+  // Ignored if there is an illumination_file.
   bool lightmap = false;
   // If true, sets encoded_textures, normals and rest, which exports that keep the scene need.
   bool keep_scene = false;

@@ -159,6 +159,27 @@ void SceneBuilder::keep_used(Scene& scene) {
   textures = std::move(kept_textures);
 }
 
+// Makes a lightmap of light_page. Triangles without texture coordinates are not on it.
+void SceneBuilder::lay_on_light_page() {
+  auto map = std::make_shared<SceneLightmap>();
+  map->pages.push_back(std::move(light_page));
+  map->texcoords = texcoords;
+  map->texcoord_indices = texcoord_indices_;
+  map->texcoord_indices.resize(indices_.size(), Scene::kNoTexcoord);
+  map->triangle_page.assign(triangle_count(), 0);
+  std::uint64_t absent = 0;
+  for (std::size_t k = 0; k < indices_.size(); k += 3)
+    absent += map->texcoord_indices[k] == Scene::kNoTexcoord;
+  if (absent == triangle_count()) {
+    defects.add(DefectKind::lightmap_unusable, [&] { return file + ": no face has vt"; });
+    return;
+  }
+  if (absent > 0)
+    defects.add(
+        DefectKind::lightmap_absent, [&] { return file + ": faces without vt"; }, absent);
+  lightmap = std::move(map);
+}
+
 void SceneBuilder::move_texcoords() {
   std::vector<std::unordered_map<std::uint32_t, std::uint32_t>> moved(materials.size());
   for (std::size_t k = 0; k < texcoord_indices_.size(); ++k) {
@@ -321,6 +342,7 @@ Result<LoadedScene> SceneBuilder::finish(const ReadOptions& options, const Conte
   if (context.cancelled()) return Status::cancelled();
   for (const RawTexture& texture : textures) other_files.push_back(texture.path);
   keep_used(scene);
+  if (!light_page.empty()) lay_on_light_page();
   move_texcoords();
   place_materials(options, scene);
   place_uv_aspects(loaded);

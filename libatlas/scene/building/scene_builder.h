@@ -84,6 +84,7 @@ class SceneBuilder {
   bool wants_rest = false;                        // ReadOptions::rest
   bool wants_lightmap = false;                    // ReadOptions::lightmap
   std::shared_ptr<const SceneLightmap> lightmap;  // Scene::lightmap
+  ImageF light_page;  // if not empty, the only page of a lightmap whose uvs are `texcoords`
   std::shared_ptr<GltfSource> source;        // Scene::source; if set, all of `textures` are kept
   NamedFiles named_files;                    // finds material libraries and their textures
   LossCounts not_read;                       // Scene::not_read, without the materials' MTL lines
@@ -208,6 +209,7 @@ class SceneBuilder {
   Status place_positions(Scene& scene);
   void keep_used(Scene& scene);
   void move_texcoords();
+  void lay_on_light_page();
   void place_normals(Scene& scene);
   void place_uv_aspects(LoadedScene& loaded) const;
   void place_materials(const ReadOptions& options, Scene& scene);

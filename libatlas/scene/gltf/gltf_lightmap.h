@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "libatlas/core/context.h"
+#include "libatlas/scene/building/lightmap_images.h"
 #include "libatlas/scene/building/scene_builder.h"
 #include "libatlas/scene/gltf/gltf_file.h"
 
@@ -46,24 +47,15 @@ class GltfLightmap {
   void finish();
 
  private:
-  // What the file says.
-  struct Named {
-    std::vector<std::string> images, linear;  // uris; a page each
-    int set = 0;                              // of texture coordinates
-    float white = 1;                          // the light that the images show as 1
-  };
   // Returns what keeps the lightmap from being used, or an empty string.
   std::string name_from(const tinygltf::Value& extras);
   std::string coordinates_of(const tinygltf::Primitive& primitive, const std::string& name,
                              Part& part);
-  Status read_pages(bool linear, const std::vector<bool>& used, const Context& context);
-  Result<ImageF> read_page(const std::string& uri, bool linear);
-  std::filesystem::path path_of(const std::string& uri) const;
-  void note_files();
 
   const tinygltf::Model& model_;
   SceneBuilder& builder_;
-  std::optional<Named> named_;
+  std::optional<LightmapImages> named_;
+  int set_ = 0;                      // of texture coordinates
   std::map<int, Part> parts_;        // by accessor
   std::vector<bool> used_;           // 1 per page: whether a part lies on it
   std::vector<std::string> absent_;  // primitives that have no part, and why

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <map>
 #include <mutex>
+#include <optional>
 #include <set>
 
 #include "libatlas/core/parallel.h"
@@ -13,6 +14,7 @@
 #include "libatlas/scene/files/file_bytes.h"
 #include "libatlas/scene/files/mtl_names.h"
 #include "libatlas/scene/obj/obj_chunk.h"
+#include "libatlas/scene/obj/obj_lightmap.h"
 
 namespace atlas {
 namespace fs = std::filesystem;
@@ -282,14 +284,18 @@ Status check_tail(const fs::path& path, const FileBytes& bytes, const ObjChunk& 
                   path.string(), lines)};
 }
 
-// Takes what the comments at the head of the file say of the pages of its uvs.
-void take_uv_pages(const FileBytes& bytes, UvPages& pages) {
+// Takes what the comments at the head of the file say of the pages of its uvs. Returns the lightmap
+// that they name.
+std::optional<LightmapImages> take_comments(const FileBytes& bytes, UvPages& pages) {
+  std::optional<LightmapImages> lightmap;
   std::string_view text = bytes.text();
   while (text.starts_with('#')) {
     const std::size_t end = std::min(text.find('\n'), text.size() - 1);
     pages.take(text.substr(0, end));
+    if (!lightmap) lightmap = lightmap_in_comment(text.substr(0, end));
     text.remove_prefix(end + 1);
   }
+  return lightmap;
 }
 
 }  // namespace
@@ -297,7 +303,8 @@ void take_uv_pages(const FileBytes& bytes, UvPages& pages) {
 Status read_obj(const fs::path& path, SceneBuilder& builder, const Context& context) {
   auto bytes = read_text_bytes(path);
   if (!bytes.ok()) return bytes.status();
-  take_uv_pages(*bytes, builder.uv_pages);
+  const std::optional<LightmapImages> lightmap = take_comments(*bytes, builder.uv_pages);
+  if (lightmap && builder.wants_lightmap) read_obj_lightmap(*lightmap, builder, context);
   const std::vector<const char*> borders = cut(*bytes);
   std::vector<ObjChunk> chunks(borders.size() - 1);
   std::mutex reporting;

@@ -1,0 +1,115 @@
+#include "libatlas/scene/building/lightmap_images.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <utility>
+
+#include "libatlas/core/srgb.h"
+#include "libatlas/image/image_io.h"
+#include "libatlas/scene/files/decode_uri.h"
+
+namespace atlas {
+namespace fs = std::filesystem;
+namespace {
+
+// Limit on the texels of all pages, which are floats in memory: six gigabytes. A small file can
+// hold a large image, and name it as many pages.
+constexpr std::size_t kMostTexels = std::size_t{1} << 29;
+
+ImageF decoded(const Image8& image, float white) {
+  ImageF rgb(image.width, image.height, 3);
+  const std::size_t texels = rgb.texels.size() / 3, n = std::size_t(image.channels);
+  for (std::size_t i = 0; i < texels; ++i)
+    for (std::size_t c = 0; c < 3; ++c)
+      rgb.texels[3 * i + c] = white * srgb_decode8(image.texels[n * i + (n < 3 ? 0 : c)]);
+  return rgb;
+}
+
+// Returns the colours without alpha; grey becomes three equal channels.
+ImageF three_channels(ImageF image) {
+  if (image.channels == 3) return image;
+  ImageF rgb(image.width, image.height, 3);
+  const std::size_t texels = rgb.texels.size() / 3, n = std::size_t(image.channels);
+  for (std::size_t i = 0; i < texels; ++i)
+    for (std::size_t c = 0; c < 3; ++c)
+      rgb.texels[3 * i + c] = image.texels[n * i + (n < 3 ? 0 : c)];
+  return rgb;
+}
+
+// Returns the file that a name means.
+fs::path path_of(const std::string& name, const SceneBuilder& builder) {
+  const fs::path folder = fs::path(builder.file).parent_path();
+  std::error_code error;  // a file that cannot be examined is not there
+  const fs::path plain = folder / name, path = folder / decode_uri(name);
+  return !fs::exists(path, error) && fs::exists(plain, error) ? plain : path;
+}
+
+// Reads linear values, of which those that are no light become 0.
+Result<ImageF> read_linear(const fs::path& path, SceneBuilder& builder) {
+  auto image = read_image_float(path);
+  if (!image.ok()) return image.status();
+  for (float& value : image->texels) {
+    if (std::fabs(value) <= kMostLight) continue;
+    value = 0;
+    builder.defects.add(DefectKind::illumination_not_finite, [&] { return path.string(); });
+  }
+  return three_channels(std::move(*image));
+}
+
+// Reads a page, as an image of linear values if `white` is 0. Checks first whether the file exists,
+// because asking the decoder for it would load a large library.
+Result<ImageF> read_page(const fs::path& path, float white, SceneBuilder& builder) {
+  std::error_code error;
+  if (!fs::is_regular_file(path, error))
+    return Status(ErrorCode::not_found, path.string() + ": there is no such file");
+  builder.files.push_back(path);
+  if (white == 0) return read_linear(path, builder);
+  const auto image = read_texture(path);
+  if (!image.ok()) return image.status();
+  return decoded(image->image, white);
+}
+
+// Likewise, reads the pages that are used.
+Result<std::vector<ImageF>> read_pages(const std::vector<std::string>& names, float white,
+                                       const std::vector<bool>& used, SceneBuilder& builder,
+                                       const Context& context) {
+  std::vector<ImageF> pages(used.size());
+  std::size_t texels = 0;
+  for (std::size_t page = 0; page < used.size(); ++page) {
+    if (!used[page]) continue;
+    if (context.cancelled()) return Status::cancelled();
+    if (page >= names.size())
+      return Status(ErrorCode::not_found,
+                    fmt::format("{}: names no image for page {}", builder.file, page));
+    const fs::path path = path_of(names[page], builder);
+    auto image = read_page(path, white, builder);
+    if (!image.ok()) return image.status();
+    texels += image->texels.size() / 3;
+    if (image->empty() || texels > kMostTexels)
+      return Status(
+          ErrorCode::unsupported,
+          fmt::format("{}: its {} x {} texels and those of the pages before are more than {}",
+                      path.string(), image->width, image->height, kMostTexels));
+    pages[page] = std::move(*image);
+  }
+  return pages;
+}
+
+}  // namespace
+
+Result<std::vector<ImageF>> read_lightmap(const LightmapImages& named,
+                                          const std::vector<bool>& used, SceneBuilder& builder,
+                                          const Context& context) {
+  // Those that are read, too, will be listed as such only.
+  for (const auto* names : {&named.images, &named.linear})
+    for (const std::string& name : *names)
+      if (!name.empty()) builder.other_files.push_back(path_of(name, builder));
+  if (named.linear.empty()) return read_pages(named.images, named.white, used, builder, context);
+  Result<std::vector<ImageF>> linear = read_pages(named.linear, 0, used, builder, context);
+  if (linear.ok() || named.images.empty()) return linear;
+  builder.defects.add(DefectKind::lightmap_clipped, [&] { return linear.status().message(); });
+  return read_pages(named.images, named.white, used, builder, context);
+}
+
+}  // namespace atlas

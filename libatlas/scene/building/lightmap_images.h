@@ -1,0 +1,26 @@
+// Internal: reads the images of a scene's lightmap.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "libatlas/core/context.h"
+#include "libatlas/scene/building/scene_builder.h"
+
+namespace atlas {
+
+// What a file says of its lightmap. Names are those of files beside it, encoded as in uris or
+// plain.
+struct LightmapImages {
+  std::vector<std::string> images, linear;  // a page each; either may be empty
+  float white = 1;                          // the light that `images` show as 1
+};
+
+// Reads the pages that are used: the linear images if all can be read, otherwise the others; that
+// some cannot is a defect. Pages that are not used stay empty. Notes all files. Error: the reason
+// why the pages cannot be read from either.
+Result<std::vector<ImageF>> read_lightmap(const LightmapImages& named,
+                                          const std::vector<bool>& used, SceneBuilder& builder,
+                                          const Context& context);
+
+}  // namespace atlas
