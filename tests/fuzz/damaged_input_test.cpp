@@ -282,6 +282,10 @@ TEST(DamagedLightmaps, AreReadOrLeftOut) {
   const Seed seed{"glb", lightmapped_glb()};
   EXPECT_GT(accepted_of(seed, {500, 4, 8}, test::fuzz_reader), 20);
   EXPECT_GT(accepted_of(seed, {200, 4, 9}, test::fuzz_view), 2);
+  const Seed obj{
+      "obj", "# lightmap: page.hdr (sRGB-encoded, white is 2.5 of it), page.hdr (linear)\n" + kObj};
+  EXPECT_GT(accepted_of(obj, {500, 4, 10}, test::fuzz_reader), 20);
+  EXPECT_GT(accepted_of(obj, {200, 4, 11}, test::fuzz_view), 2);
 }
 
 const std::string kCsv = R"(name,width,height
