@@ -158,8 +158,10 @@ TEST(Advice, PagesThatLoseTheDetailOfTheLightAreNamed) {
                     "light are 1 mm apart (a shorter ExportOptions::texel_metres)"));
   report.texel = 0.0015;
   EXPECT_TRUE(holds(advice_on(report, {}), "(more ExportOptions::atlases or a larger"));
-  EXPECT_TRUE(holds(advice_on(report, {.keep_scene = true}),
-                    "(a larger ExportOptions::atlas_size)"));  // a lightmap is one page
+  EXPECT_TRUE(holds(advice_on(report, {.target = "w.glb", .keep_scene = true}),
+                    "(more ExportOptions::atlases or a larger"));
+  EXPECT_TRUE(holds(advice_on(report, {.target = "w.obj", .keep_scene = true}),
+                    "(a larger ExportOptions::atlas_size)"));  // its lightmap is one page
   const auto silent = [&](auto change) {
     ExportReport other = report;
     change(other);
