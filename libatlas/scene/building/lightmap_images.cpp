@@ -98,13 +98,15 @@ Result<std::vector<ImageF>> read_pages(const std::vector<std::string>& names, fl
 
 }  // namespace
 
-Result<std::vector<ImageF>> read_lightmap(const LightmapImages& named,
-                                          const std::vector<bool>& used, SceneBuilder& builder,
-                                          const Context& context) {
-  // Those that are read, too, will be listed as such only.
+void note_lightmap(const LightmapImages& named, SceneBuilder& builder) {
   for (const auto* names : {&named.images, &named.linear})
     for (const std::string& name : *names)
       if (!name.empty()) builder.other_files.push_back(path_of(name, builder));
+}
+
+Result<std::vector<ImageF>> read_lightmap(const LightmapImages& named,
+                                          const std::vector<bool>& used, SceneBuilder& builder,
+                                          const Context& context) {
   if (named.linear.empty()) return read_pages(named.images, named.white, used, builder, context);
   Result<std::vector<ImageF>> linear = read_pages(named.linear, 0, used, builder, context);
   if (linear.ok() || named.images.empty()) return linear;

@@ -16,9 +16,13 @@ struct LightmapImages {
   float white = 1;                          // the light that `images` show as 1
 };
 
+// Notes the images as files that the scene names. Those that are read, too, will be listed as such
+// only.
+void note_lightmap(const LightmapImages& named, SceneBuilder& builder);
+
 // Reads the pages that are used: the linear images if all can be read, otherwise the others; that
-// some cannot is a defect. Pages that are not used stay empty. Notes all files. Error: the reason
-// why the pages cannot be read from either.
+// some cannot is a defect. Pages that are not used stay empty. Error: the reason why the pages
+// cannot be read from either.
 Result<std::vector<ImageF>> read_lightmap(const LightmapImages& named,
                                           const std::vector<bool>& used, SceneBuilder& builder,
                                           const Context& context);

@@ -36,10 +36,12 @@ std::size_t count_of(const tinygltf::Model& model, int accessor) {
 GltfLightmap::GltfLightmap(const tinygltf::Model& model, SceneBuilder& builder)
     : model_(model), builder_(builder) {
   const tinygltf::Value& extras = model.asset.extras;
-  if (!builder.wants_lightmap || !extras.IsObject() || !extras.Has("lightmap")) return;
+  if (!extras.IsObject() || !extras.Has("lightmap")) return;
   const std::string wrong = name_from(extras.Get("lightmap"));
-  if (wrong.empty()) return;
+  if (named_) note_lightmap(*named_, builder);
+  if (wrong.empty() && builder.wants_lightmap) return;
   named_.reset();
+  if (!builder.wants_lightmap) return;
   builder_.defects.add(DefectKind::lightmap_unusable, [&] {
     return fmt::format("{}: asset.extras.lightmap {}", builder_.file, wrong);
   });

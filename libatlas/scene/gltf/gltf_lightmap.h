@@ -19,7 +19,8 @@ namespace atlas {
 
 // Collects what primitives say of the lightmap, then loads its pages, then takes the triangles. If
 // the file names none, the builder does not want it (SceneBuilder::wants_lightmap), or it cannot be
-// used, which is a defect, all calls do nothing.
+// used, which is a defect, all calls do nothing. The images are noted as files of the scene in any
+// case.
 class GltfLightmap {
  public:
   // Both must outlive the object.

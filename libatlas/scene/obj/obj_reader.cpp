@@ -304,6 +304,7 @@ Status read_obj(const fs::path& path, SceneBuilder& builder, const Context& cont
   auto bytes = read_text_bytes(path);
   if (!bytes.ok()) return bytes.status();
   const std::optional<LightmapImages> lightmap = take_comments(*bytes, builder.uv_pages);
+  if (lightmap) note_lightmap(*lightmap, builder);
   if (lightmap && builder.wants_lightmap) read_obj_lightmap(*lightmap, builder, context);
   const std::vector<const char*> borders = cut(*bytes);
   std::vector<ObjChunk> chunks(borders.size() - 1);

@@ -197,6 +197,24 @@ TEST_F(AtlasExport, ALightmapOverwritesNoTextureOfItsScene) {
   EXPECT_EQ(slurp(dir_ / "w_0.png"), image);
 }
 
+// Files that an export has written name the images of their lightmap, whether it is read or not.
+TEST_F(AtlasExport, LightFromAnotherFileOverwritesNoLightmapOfTheScene) {
+  write("box.obj", lit_box(2));
+  for (const char* kept : {"w.glb", "w.obj"}) {
+    ASSERT_EQ(
+        run(fmt::format("{0}/box.obj -o {0}/{1} --keep-scene -q", dir_.string(), kept)).exit_code,
+        0);
+    const auto before = files();
+    const std::string image = slurp(dir_ / "w_0.png");
+    const RunResult r =
+        run(fmt::format("{0}/{1} --illumination {0}/box.obj -o {0}/w.wrl -q", dir_.string(), kept));
+    EXPECT_EQ(r.exit_code, 2);
+    EXPECT_NE(r.output.find("its images would overwrite"), std::string::npos) << r.output;
+    EXPECT_EQ(files(), before);
+    EXPECT_EQ(slurp(dir_ / "w_0.png"), image);
+  }
+}
+
 // The textures of a scene that is kept are copied beside a .gltf, but never over one of them.
 TEST_F(AtlasExport, AKeptSceneOverwritesNoneOfItsTextures) {
   const fs::path scene = write("box.obj", lit_box(2));
