@@ -3,7 +3,6 @@
 #include "libatlas/core/counting_sort.h"
 #include "libatlas/uvs/open_stacks.h"
 #include "libatlas/uvs/push_slivers.h"
-#include "libatlas/uvs/spread_specks.h"
 #include "libatlas/uvs/thin_uvs.h"
 
 namespace atlas {
@@ -23,11 +22,8 @@ class SliverOpener {
     for (const Vec2d& p : exact_) start_.push_back(to_glm(p));
     push_open();
     open_stacks({corners_, corners_at_, start_}, farthest_, uvs_);
-    if (count_thin() == 0) return 0;
-    spread_specks(corners_, corners_at_, uvs_);
-    for (std::size_t i = 0; i < uvs_.size(); ++i) start_[i] = to_dvec(uvs_[i]);
-    push_open();
-    return count_thin();
+    const std::size_t thin = count_thin();
+    return thin == 0 ? 0 : push_on(thin);
   }
 
  private:
@@ -39,6 +35,19 @@ class SliverOpener {
     std::size_t count = 0;
     for (std::uint32_t t = 0; t < corners_.size() / 3; ++t) count += thin(t);
     return count;
+  }
+
+  // Pushes from where uvs have come to, and undoes that unless fewer than `thin` triangles are thin
+  // then. Of parts of very different sizes, it left 2206 thin triangles of 2344 in one mesh, and
+  // would have left 252 instead of 90 in another.
+  std::size_t push_on(std::size_t thin) {
+    const std::vector<Vec2f> before = uvs_;
+    for (std::size_t i = 0; i < uvs_.size(); ++i) start_[i] = to_dvec(uvs_[i]);
+    push_open();
+    const std::size_t left = count_thin();
+    if (left < thin) return left;
+    uvs_ = before;
+    return thin;
   }
 
   void push_open() { push_slivers({corners_, corners_at_, start_}, exact_, farthest_, uvs_); }

@@ -19,9 +19,8 @@ namespace atlas {
 // floats are multiplied by a page's size in single precision.
 // `corners` are three per triangle, counter-clockwise in `exact`. Triangles that name a uv twice
 // are points or lines, and stay so. `farthest` (> 0, a share of the page) limits how far a corner
-// moves along either axis; corners of specks may move by up to 10^-4 more. On baked pages, it
-// should be a texel, which is what their gutters tolerate. Returns how many triangles could not be
-// opened.
+// moves along either axis. On baked pages, it should be a texel, which is what their gutters
+// tolerate. Returns how many triangles could not be opened.
 std::size_t round_uvs(std::span<const Vec2d> exact, std::span<const std::uint32_t> corners,
                       std::vector<Vec2f>& rounded, double farthest = 1);
 

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "libatlas/uvs/open_stacks.h"
+#include "libatlas/uvs/push_slivers.h"
 #include "libatlas/uvs/thin_uvs.h"
 #include "tests/uvs/flat_mesh.h"
 
@@ -132,6 +133,24 @@ TEST(OpenStacks, WhatIsHemmedInMovesItsNeighbours) {
   }
 }
 
+// The slivers are open but for one. Moves of less than a step help nothing, and the exact uvs are
+// worse when they are rounded.
+TEST(OpenStacks, MovesThatDoNotHelpAreNotMade) {
+  const FlatMesh mesh = stack_of_slivers(3, 6, 0, 1e-9);
+  std::vector<Vec2f> uvs;
+  ASSERT_EQ(round_uvs(mesh.uvs, mesh.corners, uvs), 0u);
+  const std::uint32_t* c = &mesh.corners[3 * (2 * 6 + 4)];  // of the row in the middle
+  uvs[c[2]] = {(uvs[c[0]].x + uvs[c[1]].x) / 2, uvs[c[0]].y};
+  const std::vector<Vec2f> before = uvs;
+  ASSERT_GT(in_integers(mesh, uvs), 0u);
+  std::vector<glm::dvec2> exact;
+  for (const Vec2d& p : mesh.uvs) exact.push_back({p.x, p.y});
+  const Buckets corners_at = sort_into_buckets(mesh.corners.size(), uvs.size(),
+                                               [&](std::size_t i) { return mesh.corners[i]; });
+  open_stacks({mesh.corners, corners_at, exact}, 0.1 * kUvStep, uvs);
+  EXPECT_EQ(uvs, before);
+}
+
 // Fans of slivers on both sides of a line that is straight except for less than a float's last
 // place.
 TEST(RoundUvs, FansOfManySliversAreOpened) {
@@ -247,7 +266,7 @@ TEST(RoundUvs, SpecksInOnePointAreSpread) {
 }
 
 TEST(RoundUvs, APieceThatIsASpeckIsSpread) {
-  for (const double size : {0.0, 1e-9})
+  for (const double size : {1e-14, 1e-9})
     expect_spread(speck_in_grid(3, {0.55, 0.55}, 9, size), 4e-5);
 }
 
@@ -263,6 +282,36 @@ TEST(RoundUvs, SpecksThatPinchTheBorderEnd) {
   std::vector<Vec2f> rounded;
   const std::size_t left = round_uvs(mesh.uvs, mesh.corners, rounded);
   EXPECT_LE(in_integers(mesh, rounded), left);
+}
+
+// Where corners may hardly move, many slivers stay thin. Pushing them on from there closes more of
+// some stacks than it opens, and opens more of others.
+TEST(RoundUvs, PushingOnNeverClosesMore) {
+  constexpr double kFarthest = 3e-7;
+  std::size_t all = 0, all_before = 0;
+  for (const double slope : {0.0, 0.3, 0.785398}) {
+    for (const double height : {1e-8, 1e-9, 1e-12}) {
+      const FlatMesh mesh = stack_of_slivers(8, 20, slope, height);
+      const Buckets corners_at = sort_into_buckets(mesh.corners.size(), mesh.uvs.size(),
+                                                   [&](std::size_t i) { return mesh.corners[i]; });
+      std::vector<glm::dvec2> exact;
+      std::vector<Vec2f> uvs, rounded;
+      for (const Vec2d& p : mesh.uvs) {
+        exact.push_back(to_glm(p));
+        uvs.push_back(rounded_uv(exact.back()));
+      }
+      push_slivers({mesh.corners, corners_at, exact}, mesh.uvs, kFarthest, uvs);
+      open_stacks({mesh.corners, corners_at, exact}, kFarthest, uvs);
+      std::size_t before = 0;
+      for (std::size_t c = 0; c < mesh.corners.size(); c += 3)
+        before += is_thin(std::span(mesh.corners).subspan(c).first<3>(), uvs);
+      const std::size_t left = round_uvs(mesh.uvs, mesh.corners, rounded, kFarthest);
+      EXPECT_LE(left, before) << mesh.name;
+      all += left;
+      all_before += before;
+    }
+  }
+  EXPECT_LT(all, all_before);
 }
 
 TEST(RoundUvs, WhatIsOpenIsRoundedToTheNearest) {
