@@ -19,14 +19,9 @@ constexpr float kTouched = 1e-7f;
 // twice the sweeps. With a higher weight, slopes at the border become flatter.
 constexpr float kSmoothness = 1e-3f;
 
-// This is less than the diagonal element of any texel that is sampled all round or half round. If
-// no texel of a chart has as much, as in slivers, the weight of the differences is reduced as much
-// as that of the samples.
-constexpr float kUsual = 0.1f;
-
-// Symmetric Gauss-Seidel on the scaled bilinear mass matrix (condition number 9) converges fast. On
-// a lit interior, 0, 1, 2, 3 and 4 sweeps from the lumped start gave a PSNR of 46.15, 49.64, 50.08,
-// 50.16 and 50.18 dB.
+// Gauss-Seidel on the scaled bilinear mass matrix (condition number 9) converges fast. On a lit
+// interior, 2, 3 and 4 sweeps from the lumped start gave a PSNR of 52.24, 52.41 and 52.45 dB. Three
+// in turns upwards and downwards gave 52.35: what was solved last would be solved again first.
 constexpr int kSweeps = 3;
 
 }  // namespace
@@ -135,18 +130,18 @@ struct LeastSquares::Kernels {
 
   // Solves the columns of one parity before those of the other, because texels of equal parity do
   // not depend on each other.
-  static void relax_narrow(const Row& row, int first, const Bounds& bounds) {
+  static void relax_narrow(const Row& row, const Bounds& bounds) {
     const Lanes low = splat_lanes(bounds.low), high = splat_lanes(bounds.high);
-    for (const int begin : {first, 1 - first})
+    for (const int begin : {0, 1})
       for (int i = begin; i < row.width; i += 2) relax<One>(row, i, low, high);
   }
 
   // Does the same in one pass: texels of the second parity follow as soon as both their neighbours
   // are done.
-  ATLAS_WIDE static void relax_wide(const Row& row, int first, const Bounds& bounds) {
+  ATLAS_WIDE static void relax_wide(const Row& row, const Bounds& bounds) {
     const Lanes low = splat_lanes(bounds.low), high = splat_lanes(bounds.high);
     const Lanes2 low2 = join_lanes(low, low), high2 = join_lanes(high, high);
-    int early = first, late = 1 - first;
+    int early = 0, late = 1;
     for (; early + 2 < row.width; early += 4) {
       relax<Two>(row, early, low2, high2);
       if (late > early - 1) continue;
@@ -168,16 +163,13 @@ void LeastSquares::add_row(const Run& run, const Lanes* rgb1, int n) {
 }
 
 // Removes untouched texels from the equations. Their touched neighbours' values stand in for what
-// they would add to a look-up, so that a constant stays a constant. Returns the largest diagonal
-// element.
-float LeastSquares::drop_untouched() {
-  float largest = 0;
+// they would add to a look-up, so that a constant stays a constant.
+void LeastSquares::drop_untouched() {
   const auto s = static_cast<std::ptrdiff_t>(stride_);
   const std::ptrdiff_t towards[4] = {1, s, s + 1, s - 1};  // as Cell::pair
   for (int y = 0; y < height_; ++y)
     for (int x = 0; x < width_; ++x) {
       Cell* c = &cells_[index(x, y)];
-      largest = std::max(largest, c->value[3]);
       if (c->value[3] > kTouched || !(c->value[3] > 0)) continue;
       for (int k = 0; k < 4; ++k) {
         c[towards[k]].value[3] += c->pair[k];
@@ -186,7 +178,6 @@ float LeastSquares::drop_untouched() {
       }
       *c = {};
     }
-  return largest;
 }
 
 // Starts with the mean of the samples around each texel, weighted by its tent function: the
@@ -207,7 +198,7 @@ void LeastSquares::start_row(int j, Solution& to) const {
 
 // Adds the differences between touched neighbours (north-south and east-west) to the matrix, and
 // replaces diagonal elements by their inverses. They stay 0 where no sample came.
-void LeastSquares::smooth_row(int j, float weight) {
+void LeastSquares::smooth_row(int j) {
   bool touched = false, east = cells_[index(0, j)].value[3] > 0;
   for (int i = 0; i < width_; ++i) {
     Cell* c = &cells_[index(i, j)];
@@ -219,17 +210,17 @@ void LeastSquares::smooth_row(int j, float weight) {
     const bool north = c[stride_].value[3] > 0, south = (c - stride_)->value[3] > 0;
     // Whole vectors are written because they will soon be read as such: a processor has to wait if
     // a vector must be put together from parts that were just written.
-    c->pair -= Lanes{east ? weight : 0, north ? weight : 0, 0, 0};
+    c->pair -= Lanes{east ? kSmoothness : 0, north ? kSmoothness : 0, 0, 0};
     Lanes value = c->value;
-    value[3] = 1 / (value[3] + weight * static_cast<float>(east + north + west + south));
+    value[3] = 1 / (value[3] + kSmoothness * static_cast<float>(east + north + west + south));
     c->value = value;
   }
 }
 
-void LeastSquares::sweep_row(int j, int first, const Bounds& bounds, Solution& to) const {
+void LeastSquares::sweep_row(int j, const Bounds& bounds, Solution& to) const {
   const std::size_t at = index(0, j);
   (has_wide_vectors ? Kernels::relax_wide : Kernels::relax_narrow)(
-      {&cells_[at], &to.x[at], width_, static_cast<std::ptrdiff_t>(stride_)}, first, bounds);
+      {&cells_[at], &to.x[at], width_, static_cast<std::ptrdiff_t>(stride_)}, bounds);
 }
 
 // Returns the texels without the border around them.
@@ -247,7 +238,7 @@ TexelGrid LeastSquares::without_border(Solution&& from) const {
 
 TexelGrid LeastSquares::solve(float low, float high) && {
   const Bounds bounds{low, high};
-  const float weight = kSmoothness * std::min(1.0f, drop_untouched() / kUsual);
+  drop_untouched();
   Solution solution{std::vector<Lanes>(cells_.size()),
                     std::vector<unsigned char>(std::size_t(width_) * height_)};
   // The start values and the first sweep share one pass through memory. The start value of a texel
@@ -256,13 +247,11 @@ TexelGrid LeastSquares::solve(float low, float high) && {
   for (int j = 0; j <= height_; ++j) {
     if (j < height_) start_row(j, solution);
     if (j == 0) continue;
-    smooth_row(j - 1, weight);
-    sweep_row(j - 1, 0, bounds, solution);
+    smooth_row(j - 1);
+    sweep_row(j - 1, bounds, solution);
   }
   for (int i = 1; i < kSweeps; ++i)
-    for (int j = 0; j < height_; ++j)
-      i % 2 == 0 ? sweep_row(j, 0, bounds, solution)
-                 : sweep_row(height_ - 1 - j, 1, bounds, solution);
+    for (int j = 0; j < height_; ++j) sweep_row(j, bounds, solution);
   std::vector<Cell>().swap(cells_);
   return without_border(std::move(solution));
 }

@@ -91,10 +91,10 @@ class LeastSquares {
     std::vector<unsigned char> known;  // without
   };
 
-  float drop_untouched();
+  void drop_untouched();
   void start_row(int j, Solution& to) const;
-  void smooth_row(int j, float weight);
-  void sweep_row(int j, int first, const Bounds& bounds, Solution& to) const;
+  void smooth_row(int j);
+  void sweep_row(int j, const Bounds& bounds, Solution& to) const;
   TexelGrid without_border(Solution&& from) const;
 
   int width_, height_;
