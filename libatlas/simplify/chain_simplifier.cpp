@@ -208,7 +208,7 @@ bool ChainSimplifier::attempt(std::uint32_t slot, const Candidate& candidate) {
   return true;
 }
 
-void ChainSimplifier::process(std::uint32_t slot, float cost) {
+void ChainSimplifier::process(std::uint32_t slot) {
   const BorderChain& chain = chain_of(slot);
   if (!may_go(chain, slot)) return;
   const std::uint32_t ends[2] = {previous_[slot], next_[slot]};
@@ -221,11 +221,6 @@ void ChainSimplifier::process(std::uint32_t slot, float cost) {
     std::swap(candidates[0], candidates[1]);
   }
   if (!candidates[0].possible) return;
-  const float fresh = static_cast<float>(candidates[0].cost);
-  if (fresh > cost && fresh > next_cost()) {
-    push(slot, fresh);
-    return;
-  }
   for (const Candidate& candidate : candidates) {
     if (!candidate.possible || !attempt(slot, candidate)) continue;
     for (const std::uint32_t s : ends) {
@@ -243,7 +238,7 @@ void ChainSimplifier::run(double limit, const Context& context) {
     heap_.pop_back();
     if (key_[top.slot] != top.cost || !alive_[top.slot]) continue;
     key_[top.slot] = kIdle;
-    process(top.slot, top.cost);
+    process(top.slot);
   }
 }
 

@@ -56,7 +56,7 @@ class ChainSimplifier {
   Candidate judge(std::uint32_t slot, std::uint32_t target, double step);
   bool apart(const BorderChain& chain) const;
   bool attempt(std::uint32_t slot, const Candidate& candidate);
-  void process(std::uint32_t slot, float cost);
+  void process(std::uint32_t slot);
   void push(std::uint32_t slot, float cost);
 
   const Geometry& geometry_;

@@ -138,6 +138,29 @@ TEST(SimplifyBorders, ASideOfFewVerticesBecomesOneEdge) {
   }
 }
 
+// The fewest vertices are those of a regular polygon. What an edge of it cuts off counts twice, in
+// space and in uv.
+TEST(SimplifyBorders, OfADiscStayHardlyMoreVerticesThanItsBoundNeeds) {
+  constexpr double kDensity = 100;
+  for (const std::uint32_t n : {500u, 2000u, 5000u}) {
+    std::vector<Vertex> vertices{{{0, 0, 0}, {0, 0}}};
+    std::vector<std::uint32_t> triangles;
+    for (std::uint32_t i = 0; i < n; ++i) {
+      const double angle = 2 * M_PI * i / n;
+      const Vec3f p{float(std::cos(angle)), float(std::sin(angle)), 0};
+      vertices.push_back({p, {p.x, p.y}});
+      triangles.insert(triangles.end(), {0, i + 1, (i + 1) % n + 1});
+    }
+    ChartedMeshBuilder builder;
+    builder.add_chart(vertices, triangles);
+    const SimplifyOptions options;
+    const double sagitta = options.max_border_slip_texels / (2 * kDensity);
+    const double fewest = M_PI / std::acos(1 - sagitta);
+    const SimplifiedMesh coarse = simplify(builder.build(), kDensity, options);
+    EXPECT_LT(double(coarse.triangles_out), 1.15 * fewest) << n;
+  }
+}
+
 // Two folded plates touch where their folds cross. Each fold is straight, but another border passes
 // through that point, so it stays in both.
 TEST(SimplifyBorders, SeamsThatCrossAtAPointKeepIt) {
