@@ -41,4 +41,12 @@ inline Vec3d from_glm(const glm::dvec3& v) {
   return {v.x, v.y, v.z};
 }
 
+// Returns the direction of a vector, or `otherwise` if it has none. Computed in double: the squares
+// of areas leave the range of floats for parts of some 10^-10 of a scene.
+inline glm::vec3 unit_or(const glm::vec3& v, const glm::vec3& otherwise) {
+  const glm::dvec3 d(v);
+  const double length = glm::length(d);
+  return length > 0 ? glm::vec3(d / length) : otherwise;
+}
+
 }  // namespace atlas

@@ -9,13 +9,6 @@
 namespace atlas {
 namespace {
 
-glm::vec3 unit_or(const glm::vec3& v, const glm::vec3& otherwise) {
-  // Computed in double, since the squares of small scenes' areas underflow floats.
-  const glm::dvec3 d(v);
-  const double length = glm::length(d);
-  return length > 0 ? glm::vec3(d / length) : otherwise;
-}
-
 // A vertex with more corners is the hub of thin triangles, which keep their own normals: comparing
 // each of them with all others would take quadratic time.
 constexpr std::size_t kHub = 1024;

@@ -57,6 +57,22 @@ TEST(Invariance, AnyUnitGivesTheSameCharts) {
   }
 }
 
+// The squares of a speck's areas are no floats. Normals of wrong lengths made distances negative,
+// and the search for the shortest never ended.
+TEST(Invariance, ASpeckBesideALargePieceHasItsCharts) {
+  const auto alone = std::ptrdiff_t(charts_of(sphere(48, 24)).charts.size());
+  for (const double size : {1e-3, 1e-9, 1e-10, 1e-11}) {
+    const ChartSet set = charts_of(together(sphere(48, 24), sphere(20, 12, size)));
+    std::vector<bool> large(set.charts.size()), small(set.charts.size());
+    const std::size_t first = sphere(48, 24).triangle_count();
+    for (std::size_t t = 0; t < set.triangle_chart.size(); ++t)
+      (t < first ? large : small)[set.triangle_chart[t]] = true;
+    EXPECT_EQ(std::count(large.begin(), large.end(), true), alone) << size;
+    EXPECT_LE(std::count(small.begin(), small.end(), true), 12) << size;
+    EXPECT_EQ(set.distortion.flips, 0u) << size;
+  }
+}
+
 TEST(Invariance, AnyDirectionGivesTheSameCharts) {
   std::vector<Turn> turns{turn_about({0, 0, 1}, std::numbers::pi / 2),
                           turn_about({1, 0, 0}, std::numbers::pi / 4), turn_about({1, 2, 3}, 1e-6)};

@@ -54,11 +54,10 @@ class GrainBuilder {
         order_.push_back(o / 3);
       }
     }
-    const float length = glm::length(normal);
     grains_.area.push_back(area);
     grains_.size.push_back(static_cast<std::uint32_t>(order_.size() - first));
     grains_.centroid.push_back(area > 0 ? middle / area : centroid(topology_, seed));
-    grains_.normal.push_back(length > 0 ? normal / length : axis);
+    grains_.normal.push_back(unit_or(normal, axis));
     grains_.component.push_back(component);
   }
 

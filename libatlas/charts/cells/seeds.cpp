@@ -282,8 +282,7 @@ class Seeder {
       if (owner_[n] != owner_[g]) continue;  // it may lie beyond a crease
       sum += grains_.area[n] * grains_.normal[n];
     }
-    const float length = glm::length(sum);
-    return length > 0 ? sum / length : grains_.normal[g];
+    return unit_or(sum, grains_.normal[g]);
   }
 
   void recentre(std::uint32_t first, std::uint32_t last, std::size_t first_seed) {
