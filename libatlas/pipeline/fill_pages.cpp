@@ -43,6 +43,8 @@ constexpr double kLeastGain = 0.1, kLeastGainSeveral = 0.05, kSeamPrice = 0.06, 
 constexpr double kMostPressed = 1.15;
 constexpr int kMostVain = 2;
 constexpr std::size_t kFewAPage = 16;
+// Several pages that are filled to less are laid out once more as fewer pages.
+constexpr double kPoor = 0.5;
 
 // Tells how well layouts fill the pages that may be used.
 struct Goal {
@@ -251,12 +253,47 @@ class PageFiller {
   int parts_ = 0;  // how many are done
 };
 
+// What is laid out, before anything was cut.
+struct Whole {
+  const PlainUvs& uvs;
+  const LayoutOptions& options;
+  ChartSet& charts;
+};
+
+// What cuts cover of pages that stay empty is too little to be worth their seams, and triangles
+// longer than a page are not cut at all: eight pages of a hinge had longer texels than two.
+// Therefore lays poorly filled pages out again, as so few as could hold what they do. `layout` and
+// `charts` become the denser result.
+Status try_fewer_pages(const Whole& whole, PageLayout& layout, ChartSet& charts,
+                       const Context& context) {
+  const std::size_t count = layout.pages.size();
+  if (count == whole.options.pages && layout.uv_utilization >= kPoor) return {};
+  LayoutOptions fewer = whole.options;
+  const double filled = layout.uv_utilization * double(count) / kFilledSeveral;
+  fewer.pages = std::max(2u, std::uint32_t(std::ceil(filled)));
+  if (fewer.pages >= whole.options.pages) return {};
+  Result<PageLayout> denser = PageFiller(whole.uvs, fewer, whole.charts, context).run(whole.charts);
+  if (denser.status().code() == ErrorCode::no_solution) return {};
+  if (!denser.ok()) return denser.status();
+  if (denser->scale <= layout.scale) return {};
+  layout = std::move(*denser);
+  charts = std::move(whole.charts);
+  return {};
+}
+
 }  // namespace
 
 Result<PageLayout> fill_pages(const PlainUvs& uvs, const LayoutOptions& options, ChartSet& charts,
                               const Context& context) {
   const Context stage = part_of_stage(context, "packing");  // an early way may be pressed last
+  const bool may_cut = options.pages > 2 && uvs.options.min_fill > 0 && !uvs.options.keep_uv_charts;
+  ChartSet whole;
+  if (may_cut) whole = charts;
   Result<PageLayout> layout = PageFiller(uvs, options, charts, stage).run(charts);
+  if (may_cut && layout.ok() && layout->scale < 1) {
+    if (Status s = try_fewer_pages({uvs, options, whole}, *layout, charts, stage); !s.ok())
+      return s;
+  }
   stage.report("packing", 1);
   return layout;
 }

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <string_view>
 #include <utility>
 
@@ -97,6 +98,34 @@ TEST(FillPages, WhatPressingMakesOfCutsCounts) {
     EXPECT_GT(cut.utilization, 0.65) << count;
     EXPECT_LE(cut.charts.charts.size(), 6 * count) << count;
   }
+}
+
+// Returns a prism of unit length over a star, whose sides are two triangles each.
+Shape star_prism(std::uint32_t tips) {
+  Shape prism;
+  const std::uint32_t n = 2 * tips;
+  for (const float x : {0.f, 1.f})
+    for (std::uint32_t i = 0; i < n; ++i) {
+      const double radius = i % 2 == 0 ? 0.15 : 0.05, angle = 2 * M_PI * i / n;
+      prism.positions.push_back(
+          {x, float(radius * std::cos(angle)), float(radius * std::sin(angle))});
+    }
+  prism.positions.insert(prism.positions.end(), {{0, 0, 0}, {1, 0, 0}});
+  for (std::uint32_t i = 0; i < n; ++i) {
+    const std::uint32_t next = (i + 1) % n;
+    prism.add_quad(i, next, n + next, n + i);
+    prism.indices.insert(prism.indices.end(), {2 * n, next, i, 2 * n + 1, n + i, n + next});
+  }
+  return prism;
+}
+
+// Triangles are too long to be cut for eight pages, of which pieces would cover too little to be
+// worth their seams.
+TEST(FillPages, MorePagesMakeNothingCoarser) {
+  const Shape prism = star_prism(10);
+  const UnwrappedMesh four = unwrap(prism, {.pages = 4, .page_size = 512}),
+                      eight = unwrap(prism, {.pages = 8, .page_size = 512});
+  EXPECT_GE(eight.texels_per_unit, 0.99 * four.texels_per_unit);
 }
 
 TEST(FillPages, WhatFitsAsDenseAsItIsWantedStaysWhole) {
