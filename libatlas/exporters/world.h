@@ -42,9 +42,9 @@ struct Page {
 
 // The pages with the light of a scene that is kept, addressed by the world's uvs.
 struct Lightmap {
-  std::vector<std::string> images =
-      {};  // file names beside the world, one .png a page, sRGB-encoded
-  std::vector<std::string> linear = {};  // one .exr of the light itself a page, or empty
+  // File names beside the world, one a page: .png files, sRGB-encoded, and if asked for .exr files
+  // of the light itself.
+  std::vector<std::string> images = {}, linear = {};
   // The light that the .png shows as white, in the unit of Scene::illumination; 0: it does not grow
   // in proportion to light, because a tone curve bends it.
   double white = 0;

@@ -5,6 +5,13 @@
 #include "libatlas/core/file_extension.h"
 
 namespace atlas {
+namespace {
+
+std::string first_to_last(const std::vector<std::string>& names) {
+  return names.size() == 1 ? names[0] : names.front() + " to " + names.back();
+}
+
+}  // namespace
 
 bool has_lightmap(bool lit, const ExportOptions& options) {
   return lit && options.keep_scene && !options.charts_only;
@@ -25,14 +32,6 @@ Lightmap lightmap_of(const ExportReport& report, const ExportOptions& options) {
   if (options.tone.op == ToneOperator::linear) map.white = report.exposure_white;
   return map;
 }
-
-namespace {
-
-std::string first_to_last(const std::vector<std::string>& names) {
-  return names.size() == 1 ? names[0] : names.front() + " to " + names.back();
-}
-
-}  // namespace
 
 std::string lightmap_text(const Lightmap& lightmap) {
   const std::string scale =

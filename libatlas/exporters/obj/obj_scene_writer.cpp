@@ -180,7 +180,9 @@ Result<WorldFile> write_obj_scene(const World& world, const fs::path& path, Atom
                                   const Context& context) {
   if (world.lightmap && world.lightmap->images.size() > 1)
     return Status{ErrorCode::bad_input,
-                  path.string() + ": OBJ cannot say on which page of a lightmap a triangle is"};
+                  path.string() +
+                      ": OBJ cannot say on which page of a lightmap a triangle is (write "
+                      "glTF, or one page)"};
   const fs::path mtl_path = safely_beside(path, ".mtl");
   const std::vector<std::string> names = material_names(*world.scene);
   TextFile mtl(files.path_for(mtl_path), mtl_path, false);
