@@ -17,23 +17,14 @@ namespace {
 // hold a large image, and name it as many pages.
 constexpr std::size_t kMostTexels = std::size_t{1} << 29;
 
-ImageF decoded(const Image8& image, float white) {
+// Returns `value_of` of each colour without alpha; grey becomes three equal channels.
+template <class T, class Value>
+ImageF three_channels(const Image<T>& image, const Value& value_of) {
   ImageF rgb(image.width, image.height, 3);
   const std::size_t texels = rgb.texels.size() / 3, n = std::size_t(image.channels);
   for (std::size_t i = 0; i < texels; ++i)
     for (std::size_t c = 0; c < 3; ++c)
-      rgb.texels[3 * i + c] = white * srgb_decode8(image.texels[n * i + (n < 3 ? 0 : c)]);
-  return rgb;
-}
-
-// Returns the colours without alpha; grey becomes three equal channels.
-ImageF three_channels(ImageF image) {
-  if (image.channels == 3) return image;
-  ImageF rgb(image.width, image.height, 3);
-  const std::size_t texels = rgb.texels.size() / 3, n = std::size_t(image.channels);
-  for (std::size_t i = 0; i < texels; ++i)
-    for (std::size_t c = 0; c < 3; ++c)
-      rgb.texels[3 * i + c] = image.texels[n * i + (n < 3 ? 0 : c)];
+      rgb.texels[3 * i + c] = value_of(image.texels[n * i + (n < 3 ? 0 : c)]);
   return rgb;
 }
 
@@ -54,7 +45,8 @@ Result<ImageF> read_linear(const fs::path& path, SceneBuilder& builder) {
     value = 0;
     builder.defects.add(DefectKind::illumination_not_finite, [&] { return path.string(); });
   }
-  return three_channels(std::move(*image));
+  if (image->channels == 3) return image;
+  return three_channels(*image, [](float value) { return value; });
 }
 
 // Reads a page, as an image of linear values if `white` is 0. Checks first whether the file exists,
@@ -67,7 +59,8 @@ Result<ImageF> read_page(const fs::path& path, float white, SceneBuilder& builde
   if (white == 0) return read_linear(path, builder);
   const auto image = read_texture(path);
   if (!image.ok()) return image.status();
-  return decoded(image->image, white);
+  return three_channels(image->image,
+                        [white](std::uint8_t code) { return white * srgb_decode8(code); });
 }
 
 // Likewise, reads the pages that are used.
