@@ -26,29 +26,20 @@ float luma_of(const Vec3f& e) {
   return luma(e.x, e.y, e.z);
 }
 
-// Appends the light of each vertex on the lightmap.
-void add_mapped(const ViewScene& view, std::vector<float>& lumas) {
-  std::vector<bool> known(view.positions.size());
+// Appends the light of each vertex on the lightmap. Returns which vertices these are.
+std::vector<bool> add_mapped(const ViewScene& view, std::vector<float>& lumas) {
+  std::vector<bool> mapped(view.positions.size());
   for (const ViewScene::Cluster& c : view.clusters) {
     if (c.look.light_page < 0) continue;
     const ImageF& page = view.lightmap->pages[std::size_t(c.look.light_page)];
     for (std::uint32_t i = c.first; i < c.first + c.count; ++i) {
       const std::uint32_t v = view.indices[i];
-      if (known[v]) continue;
-      known[v] = true;
+      if (mapped[v]) continue;
+      mapped[v] = true;
       lumas.push_back(luma_of(light_on_page(page, view.light_texcoords[v])));
     }
   }
-}
-
-// Appends the light at each vertex that is not on the lightmap.
-void add_others(const ViewScene& view, std::vector<float>& lumas) {
-  std::vector<bool> mapped(view.lightmap ? view.positions.size() : 0);
-  for (const ViewScene::Cluster& c : view.clusters)
-    for (std::uint32_t i = c.first; c.look.light_page >= 0 && i < c.first + c.count; ++i)
-      mapped[view.indices[i]] = true;
-  for (std::size_t v = 0; v < view.illumination.size(); ++v)
-    if (mapped.empty() || !mapped[v]) lumas.push_back(luma_of(view.illumination[v]));
+  return mapped;
 }
 
 }  // namespace
@@ -68,8 +59,9 @@ Vec3f light_on_page(const ImageF& page, const Vec2f& uv) {
 double light_scale_of(const ViewScene& view) {
   std::vector<float> lumas;
   lumas.reserve(view.positions.size());
-  if (view.lightmap) add_mapped(view, lumas);
-  add_others(view, lumas);
+  const std::vector<bool> mapped = add_mapped(view, lumas);
+  for (std::size_t v = 0; v < view.illumination.size(); ++v)
+    if (!mapped[v]) lumas.push_back(luma_of(view.illumination[v]));
   if (lumas.empty()) return 1;
   const auto at = lumas.begin() + std::ptrdiff_t(double(lumas.size() - 1) * 0.99);
   std::nth_element(lumas.begin(), at, lumas.end());

@@ -2,7 +2,6 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <cmath>
 #include <string>
 #include <vector>
 
@@ -10,6 +9,7 @@
 #include "libatlas/pipeline/export_world.h"
 #include "libatlas/scene/check_scene.h"
 #include "tests/pipeline/lit_scene.h"
+#include "tests/pipeline/look_up.h"
 #include "tests/scene/temp_folder.h"
 
 namespace atlas::test {
@@ -25,18 +25,6 @@ LoadedScene lit_torus() {
   for (std::size_t i = 0; i < scene.positions.size(); ++i)
     scene.illumination[i] = light_at(scene.positions[i]);
   return loaded;
-}
-
-// Returns the bilinear look-up in a page.
-float look_up(const ImageF& page, const Vec2f& uv, int channel) {
-  const float x = uv.x * float(page.width) - 0.5f, y = uv.y * float(page.height) - 0.5f;
-  const auto texel = [&](float i, float j) {
-    return page.at(std::clamp(int(i), 0, page.width - 1),
-                   std::clamp(int(j), 0, page.height - 1))[channel];
-  };
-  const float x0 = std::floor(x), y0 = std::floor(y), fx = x - x0, fy = y - y0;
-  return std::lerp(std::lerp(texel(x0, y0), texel(x0 + 1, y0), fx),
-                   std::lerp(texel(x0, y0 + 1), texel(x0 + 1, y0 + 1), fx), fy);
 }
 
 struct Written {
@@ -85,8 +73,10 @@ TEST(ReadLightmap, GivesTheLightBack) {
       const Vec2f uv = map.texcoords[map.texcoord_indices[k]];
       const float most = c.exr ? 1e9f : white, error = c.exr ? 4 : 0.01f * white;
       const ImageF& page = map.pages[map.triangle_page[k / 3]];
-      ASSERT_NEAR(look_up(page, uv, 0), std::min(wanted.x, most), error) << c.name << ' ' << k;
-      ASSERT_NEAR(look_up(page, uv, 2), std::min(wanted.z, most), error) << c.name << ' ' << k;
+      ASSERT_NEAR(look_up(page, uv.x, uv.y, 0), std::min(wanted.x, most), error)
+          << c.name << ' ' << k;
+      ASSERT_NEAR(look_up(page, uv.x, uv.y, 2), std::min(wanted.z, most), error)
+          << c.name << ' ' << k;
     }
     EXPECT_FALSE(read_scene(folder / c.name, {}, {})->scene.lightmap);
   }

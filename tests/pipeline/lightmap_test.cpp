@@ -14,6 +14,7 @@
 #include "libatlas/scene/check_scene.h"
 #include "libatlas/scene/uv_page.h"
 #include "tests/pipeline/lit_scene.h"
+#include "tests/pipeline/look_up.h"
 #include "tests/scene/gltf_maker.h"
 #include "tests/scene/temp_folder.h"
 #include "tests/support/gltf_oracle.h"
@@ -52,21 +53,6 @@ ExportOptions lightmap_options(const std::filesystem::path& target) {
   options.exr = true;
   options.threshold = 0;
   return options;
-}
-
-// Returns the bilinear interpolation between the centres of texels, as graphics hardware does it.
-template <class T>
-double look_up(const Image<T>& image, double u, double v, int channel) {
-  const double x = u * image.width - 0.5, y = v * image.height - 0.5;
-  const int x0 = int(std::floor(x)), y0 = int(std::floor(y));
-  const auto texel = [&](int i, int j) {
-    i = std::clamp(i, 0, image.width - 1);
-    j = std::clamp(j, 0, image.height - 1);
-    return double(image.at(i, j)[channel]);
-  };
-  const double fx = x - x0, fy = y - y0;
-  return (texel(x0, y0) * (1 - fx) + texel(x0 + 1, y0) * fx) * (1 - fy) +
-         (texel(x0, y0 + 1) * (1 - fx) + texel(x0 + 1, y0 + 1) * fx) * fy;
 }
 
 double srgb_decoded(double code) {
