@@ -25,6 +25,9 @@ constexpr double kLeastTogether = 0.68;
 // Each further piece must let the hulls shrink by this share of the mean hull: cutting small pieces
 // into smaller ones fills no page.
 constexpr double kLeastFall = 0.1;
+// After so many charts in a row that cannot be cut with gain, the others stay whole. They waste
+// less, and a lattice, or a scan full of holes, has hundreds of them.
+constexpr int kMostInVain = 16;
 constexpr double kWasteParts = 4096;  // wastes are rounded to parts of all hulls: nearly equal ones
                                       // tie
 
@@ -45,7 +48,7 @@ class LimbCharts {
       hulls += std::min(chart.box_area(), bound_shape(chart.uvs).hull);
     }
     for (std::size_t k = 0; k < charts_.size(); ++k) {
-      if (charts_[k].box_area() >= kDominant * area_) cut(k);
+      if (charts_[k].box_area() >= kDominant * area_ && !fills_enough(k)) cut(k);
     }
     if (area_ < kLeastTogether * hulls) cut_most_wasteful();
     replace();
@@ -67,17 +70,26 @@ class LimbCharts {
     std::iota(order.begin(), order.end(), std::size_t{0});
     std::stable_sort(order.begin(), order.end(),
                      [&](std::size_t a, std::size_t b) { return waste[a] > waste[b]; });
+    int in_vain = 0;
     for (const std::size_t k : order) {
       if (area_ >= kLeastTogether * hulls || waste[k] == 0 || context_.cancelled()) return;
-      if (!pieces_[k].empty() || !cut(k)) continue;
-      const double fall = hull[k] - hulls_of(k);
-      if (fall < kLeastFall * mean * double(pieces_[k].size() - 1)) {
-        pieces_[k].clear();
-        --count_;
-      } else {
-        hulls -= fall;
+      if (!pieces_[k].empty() || fills_enough(k)) continue;
+      if (cut_shrinks(k, hull[k], mean)) {
+        hulls -= hull[k] - hulls_of(k);
+        in_vain = 0;
+      } else if (++in_vain == kMostInVain) {
+        return;
       }
     }
+  }
+
+  // Cuts the chart unless its hull shrinks by too little for the number of pieces.
+  bool cut_shrinks(std::size_t k, double hull, double mean) {
+    if (!cut(k)) return false;
+    if (hull - hulls_of(k) >= kLeastFall * mean * double(pieces_[k].size() - 1)) return true;
+    pieces_[k].clear();
+    --count_;
+    return false;
   }
 
   double hulls_of(std::size_t k) const {
@@ -87,11 +99,15 @@ class LimbCharts {
     return sum;
   }
 
-  // Fills pieces_[k] and returns true if the chart fills little and cutting it pays.
+  bool fills_enough(std::size_t k) const {
+    const FlatChart& chart = charts_[k];
+    return chart.distortion.uv_area >= kPoor * input_.options.min_fill * chart.box_area();
+  }
+
+  // Fills pieces_[k] and returns true if cutting the chart pays.
   bool cut(std::size_t k) {
     const FlatChart& chart = charts_[k];
     const double wanted = input_.options.min_fill;
-    if (chart.distortion.uv_area >= kPoor * wanted * chart.box_area()) return false;
     std::vector<FlatChart> pieces;
     for (const std::vector<std::uint32_t>& limb : limbs_of(chart, wanted, area_, context_)) {
       // A cut along a ragged border may leave a triangle unconnected to its limb.

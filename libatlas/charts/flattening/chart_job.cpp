@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "libatlas/charts/flattening/split.h"
@@ -56,6 +57,12 @@ constexpr double kWideShare = 0.04;
 // Measured on 90 meshes: where charts exceed the bound by this factor around a small hole, joining
 // the hole with the border saved 25 of 34, and a cut to a vertex none of 250.
 constexpr double kHoleStretch = 1.1;
+// Where the stretch did not fall by kSameStretch when kMostJoinsInVain holes were joined with the
+// border one after the other, joining the rest never saved a chart of at least kFewTriangles (41
+// charts of 814 meshes). In scans, charts have dozens of holes.
+constexpr std::size_t kFewTriangles = 300;
+constexpr int kMostJoinsInVain = 3;
+constexpr double kSameStretch = 0.02;
 // Charts beyond the bound whose border crosses itself more often were never saved. Of those whose
 // border still crosses itself after cuts to single vertices, 10 of 700 were.
 constexpr std::size_t kMostFirstCrossings = 3;
@@ -80,7 +87,7 @@ class ChartJob {
     if (!beyond_cone()) {
       for (int cuts = 0;; ++cuts) {
         if (try_flatten(outcome)) return outcome;
-        if (hopeless(cuts) || cuts_in_vain() || tried_enough(cuts)) break;
+        if (hopeless(cuts) || cuts_in_vain() || joins_in_vain() || tried_enough(cuts)) break;
         if (stretched_widely() && (cuts > 0 || chart_.loops.size() == 1)) break;
         keep_uvs();
         if (!cut_open_timed(cuts)) break;
@@ -202,6 +209,15 @@ class ChartJob {
   bool cuts_in_vain() const {
     if (result_.within_bound || result_.uvs.empty() || chart_.loops.size() > 1) return false;
     return result_.crossings.size() > (cut_to_tips_ ? 0 : kMostFirstCrossings);
+  }
+
+  // Whether the last cuts have left the stretch as it was. Called once for each attempt.
+  bool joins_in_vain() {
+    if (noisy() || result_.within_bound || result_.uvs.empty()) return false;
+    const double stretch = result_.distortion.stretch_999;
+    in_vain_ = stretch > (1 - kSameStretch) * least_stretch_ ? in_vain_ + 1 : 0;
+    least_stretch_ = std::min(least_stretch_, stretch);
+    return in_vain_ >= kMostJoinsInVain && chart_.triangles().size() >= kFewTriangles;
   }
 
   // Whether the chart seems to close around a small hole.
@@ -369,6 +385,8 @@ class ChartJob {
   Darts darts_;
   int closings_ = 0;
   bool cut_to_tips_ = false;
+  int in_vain_ = 0;  // attempts since the stretch fell
+  double least_stretch_ = std::numeric_limits<double>::infinity();  // of all attempts
   bool slits_closed_ = false;  // slits that opened a chart that unrolls
   NormalCone cone_;
   ParamResult result_;            // of the last attempt
