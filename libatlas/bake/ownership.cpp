@@ -44,12 +44,23 @@ void fill_cells(std::vector<std::uint8_t>& mask, const OwnershipGrid& grid) {
   }
 }
 
+// Returns a triangle a little smaller. Charts often end exactly where a cell does. Rounding must
+// not let them reach into the next cell then, which the packer may have given to another chart.
+TexelTriangle shrunk(const TexelTriangle& t) {
+  constexpr double kPart = 1e-8;
+  const Vec2d centre{(t[0].x + t[1].x + t[2].x) / 3, (t[0].y + t[1].y + t[2].y) / 3};
+  TexelTriangle out;
+  for (std::size_t k = 0; k < 3; ++k)
+    out[k] = {t[k].x + kPart * (centre.x - t[k].x), t[k].y + kPart * (centre.y - t[k].y)};
+  return out;
+}
+
 std::vector<std::uint8_t> touched_texels(std::span<const TexelTriangle> triangles,
                                          const OwnershipGrid& grid) {
   std::vector<std::uint8_t> mask(std::size_t(grid.width) * grid.height, 0);
   const Rect all{0, 0, grid.width, grid.height};
   for (const TexelTriangle& triangle : triangles) {
-    cover_triangle(triangle, all,
+    cover_triangle(shrunk(triangle), all,
                    [&](int x, int y, double, Vec2d) { mask[std::size_t(y) * grid.width + x] = 1; });
   }
   return mask;

@@ -50,7 +50,8 @@ constexpr Names kNames[] = {
     {"material_file_missing", "material files not found, their materials are white"},
     {"material_unknown", "materials used but not defined, taken as white"},
     {"reflectance_unknown",
-     "colours of materials that are a spectrum or xyz, taken as white (write Kd r g b)"},
+     "colours of materials that are a spectrum, xyz or a shader's, taken as white (write Kd r g b, "
+     "or glTF's baseColorFactor)"},
     {"reflectance_beyond_one",
      "colours of materials beyond 0 to 1, used as they are (write shares: 0.8, not 204)"},
     {"texture_missing", "textures not found, plain diffuse colour used"},

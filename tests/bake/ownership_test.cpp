@@ -63,5 +63,29 @@ TEST(Ownership, ReachesAsFarAsThePadAndFillsCells) {
   }
 }
 
+// Charts end exactly where a cell ends. The packer gives the next cell to another chart.
+TEST(Ownership, RoundingClaimsNoCellMore) {
+  const OwnershipGrid grid{48, 48, 8, 16};
+  for (const double error : {-1e-13, 0.0, 1e-13}) {
+    const double end = 24 + error;
+    const std::vector<TexelTriangle> triangles = {{{{8, 8}, {end, 8}, {end, end}}}};
+    const std::vector<std::uint8_t> owned = owned_texels(triangles, grid);
+    for (int y = 0; y < 48; ++y)
+      for (int x = 0; x < 48; ++x)
+        EXPECT_EQ(owned[std::size_t(y * 48 + x)] != 0, x < 32 && y < 32) << x << ' ' << y;
+  }
+}
+
+// However narrow a chart is, it owns what it touches.
+TEST(Ownership, SliversOwnTheirTexels) {
+  const OwnershipGrid grid{48, 16, 0, 1};
+  for (const double width : {1e-3, 1e-7, 1e-10}) {
+    const std::vector<TexelTriangle> triangles = {{{{8.5, 8.5}, {40.5, 8.5}, {8.5, 8.5 + width}}}};
+    const std::vector<std::uint8_t> owned = owned_texels(triangles, grid);
+    for (int x = 0; x < 48; ++x)
+      EXPECT_EQ(owned[std::size_t(8 * 48 + x)] != 0, x >= 8 && x <= 40) << width << ' ' << x;
+  }
+}
+
 }  // namespace
 }  // namespace atlas

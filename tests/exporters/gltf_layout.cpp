@@ -53,11 +53,24 @@ void expect_bounds(const GltfOracle& file, const json& number) {
   }
 }
 
-// Expects a view for this use, whose rows begin at multiples of four.
-void expect_view(const GltfOracle& file, const json& number, int target) {
+// Expects indices of 16 bits where that is enough.
+void expect_indices(const GltfOracle& file, const json& number) {
   const json& accessor = file.document["accessors"].at(number.get<std::size_t>());
   const json& view = file.document["bufferViews"].at(accessor.at("bufferView").get<std::size_t>());
-  EXPECT_EQ(view.at("target"), target);
+  EXPECT_EQ(view.at("target"), kIndexData);
+  EXPECT_FALSE(view.contains("byteStride"));
+  EXPECT_FALSE(accessor.contains("byteOffset"));
+  const std::vector<double> values = file.values(number);
+  const bool is_short = *std::max_element(values.begin(), values.end()) < 65535;
+  EXPECT_EQ(accessor.at("componentType"), is_short ? 5123 : 5125);
+  EXPECT_EQ(view.at("byteLength"), values.size() * (is_short ? 2 : 4));
+}
+
+// Expects a view of a vertex's data, whose rows begin at multiples of four.
+void expect_view(const GltfOracle& file, const json& number) {
+  const json& accessor = file.document["accessors"].at(number.get<std::size_t>());
+  const json& view = file.document["bufferViews"].at(accessor.at("bufferView").get<std::size_t>());
+  EXPECT_EQ(view.at("target"), kVertexData);
   const std::size_t count = accessor.at("count"), length = view.at("byteLength");
   ASSERT_GT(count, 0u);
   EXPECT_EQ(length % count, 0u);
@@ -95,8 +108,8 @@ void expect_gltf_layout(const std::filesystem::path& path) {
     for (const json& primitive : mesh.at("primitives")) {
       if (primitive.value("mode", 4) != 4) continue;
       for (const auto& [name, number] : primitive.at("attributes").items())
-        expect_view(file, number, kVertexData);
-      expect_view(file, primitive.at("indices"), kIndexData);
+        expect_view(file, number);
+      expect_indices(file, primitive.at("indices"));
       expect_bounds(file, primitive["attributes"]["POSITION"]);
     }
   }

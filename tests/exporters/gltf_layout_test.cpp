@@ -44,6 +44,20 @@ TEST(GltfLayout, OfPagesAndScenes) {
   }
 }
 
+// 65535 vertices have indices of 16 bits, more have not: the largest number means no vertex.
+TEST(GltfLayout, OfFewAndManyVertices) {
+  for (const std::size_t vertices : {65535, 65538}) {
+    const TempFolder folder;
+    Gltf gltf;
+    std::vector<float> row;
+    for (std::size_t i = 0; i < vertices; ++i)
+      row.insert(row.end(), {float(i / 3), float(i % 3 == 1), float(i % 3 == 2)});
+    gltf.single({{"attributes", {{"POSITION", gltf.floats(row, "VEC3", 3)}}}});
+    ASSERT_EQ(keep(folder.write("s.glb", gltf.glb()), folder / "w.glb").vertices, vertices);
+    expect_gltf_layout(folder / "w.glb");
+  }
+}
+
 // A file that is kept may have positions of any sign, and morph targets that are not numbers, for
 // which JSON has no bounds.
 TEST(GltfLayout, OfKeptFiles) {

@@ -90,6 +90,34 @@ TEST(KeptGltf, InstancesHaveTheWeightsOfTheirNode) {
   }
 }
 
+// Animations may name a mesh, which becomes one for each node that shows it.
+TEST(KeptGltf, AnimationsOfASharedMeshMoveItsCopies) {
+  const TempFolder folder;
+  Gltf gltf;
+  const int positions = gltf.floats({0, 0, 0, 1, 0, 0, 0, 1, 0}, "VEC3", 3);
+  gltf.single({{"attributes", {{"POSITION", positions}}},
+               {"targets", json::array({{{"POSITION", positions}}})}});
+  gltf.j["nodes"].push_back({{"mesh", 0}, {"translation", {5, 0, 0}}});
+  gltf.j["scenes"][0]["nodes"] = {0, 1};
+  const auto channel = [](const std::string& pointer) {
+    json target = {{"path", "pointer"}};
+    target["extensions"]["KHR_animation_pointer"]["pointer"] = pointer;
+    return json{{"sampler", 0}, {"target", target}};
+  };
+  const int times = gltf.floats({0, 1}, "SCALAR", 1), values = gltf.floats({1, 2}, "SCALAR", 1);
+  gltf.j["animations"] = json::array(
+      {{{"samplers", json::array({{{"input", times}, {"output", values}}})},
+        {"channels", json::array({channel("/meshes/0/weights"), channel("/nodes/0/weights"),
+                                  channel("/meshes/01")})}}});
+  keep(folder.write("s.glb", gltf.glb()), folder / "w.glb");
+  const json after = GltfOracle(folder / "w.glb").document;
+  EXPECT_EQ(after["nodes"][0]["mesh"], 0);
+  EXPECT_EQ(after["nodes"][1]["mesh"], 1);
+  json channels = gltf.j["animations"][0]["channels"];
+  channels.push_back(channel("/meshes/1/weights"));
+  EXPECT_EQ(after["animations"][0]["channels"], channels);
+}
+
 // The nodes of a file should form a tree, but many programs show a node that has two parents.
 TEST(KeptGltf, NodesOfSeveralParentsBecomeSeveral) {
   const TempFolder folder;

@@ -199,9 +199,15 @@ TEST(KeptUnit, AnimationsOfScaledValuesAreCounted) {
   gltf.j["animations"] = json::array(
       {{{"samplers", json::array({{{"input", times}, {"output", values}}})},
         {"channels", json::array({channel("/cameras/0/perspective/znear"),
+                                  channel("/cameras/0/perspective/yfov"),
                                   channel("/extensions/KHR_lights_punctual/lights/0/range"),
-                                  channel("/materials/0/alphaCutoff")})}}});
-  scaled(folder, gltf, 0.25, {"2 x animations of cameras and lights, in another unit"});
+                                  channel("/extensions/KHR_lights_punctual/lights/0/color"),
+                                  channel("/extensions/KHR_lights_punctual/lights/0/intensity"),
+                                  channel("/extensions/KHR_lights_punctual/lights/2/intensity"),
+                                  channel("/materials/0/alphaCutoff"),
+                                  channel("/materials/0/extensions/KHR_materials_volume/"
+                                          "attenuationDistance")})}}});
+  scaled(folder, gltf, 0.25, {"4 x animations of cameras, lights and volumes, in another unit"});
   scaled(folder, gltf, 1);
 }
 

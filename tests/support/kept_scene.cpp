@@ -34,17 +34,25 @@ struct GltfFile {
     }
   }
 
-  // Returns the values of an accessor, four bytes each, with `width` values per element.
+  // Returns the values of an accessor, with `width` values per element.
   template <class T>
   std::vector<T> values(std::size_t accessor, std::size_t width) const {
     const json& a = document.at("accessors").at(accessor);
     const json& view = document.at("bufferViews").at(a.at("bufferView").get<std::size_t>());
     std::vector<T> result(a.at("count").get<std::size_t>() * width);
-    if (view.at("byteLength") != result.size() * 4) throw std::runtime_error("accessor's length");
+    const std::size_t length = result.size() * sizeof(T);
+    if (view.at("byteLength") != length) throw std::runtime_error("accessor's length");
     const std::size_t offset = view.at("byteOffset");
-    if (offset + result.size() * 4 > buffer.size()) throw std::runtime_error("buffer's length");
-    std::memcpy(result.data(), buffer.data() + offset, result.size() * 4);
+    if (offset + length > buffer.size()) throw std::runtime_error("buffer's length");
+    std::memcpy(result.data(), buffer.data() + offset, length);
     return result;
+  }
+
+  std::vector<std::uint32_t> indices(std::size_t accessor) const {
+    if (document.at("accessors").at(accessor).at("componentType") == 5125)
+      return values<std::uint32_t>(accessor, 1);
+    const auto shorts = values<std::uint16_t>(accessor, 1);
+    return {shorts.begin(), shorts.end()};
   }
 };
 
@@ -70,7 +78,7 @@ void add_primitive(const GltfFile& file, const json& primitive, const std::strin
   const json& material =
       file.document.at("materials").at(primitive.at("material").get<std::size_t>());
   const std::size_t page = primitive.value("extras", json::object()).value("lightmap", 0);
-  const auto indices = file.values<std::uint32_t>(primitive.at("indices"), 1);
+  const auto indices = file.indices(primitive.at("indices"));
   for (std::size_t k = 0; k + 2 < indices.size(); k += 3) {
     KeptTriangle triangle{object,
                           material.value("name", ""),

@@ -15,7 +15,8 @@ namespace atlas {
 namespace fs = std::filesystem;
 namespace {
 
-constexpr int kFloat = 5126, kUint = 5125, kArrayBuffer = 34962, kElementBuffer = 34963;
+constexpr int kFloat = 5126, kUint = 5125, kUshort = 5123, kArrayBuffer = 34962,
+              kElementBuffer = 34963;
 
 std::string word(std::size_t value) {
   const auto bits = static_cast<std::uint32_t>(value);
@@ -153,10 +154,19 @@ std::size_t GltfDocument::add_uvs(std::vector<Vec2f> values) {
 }
 
 std::size_t GltfDocument::add_indices(std::span<const std::uint32_t> values) {
+  // 65535 is no vertex: in 16 bits it divides strips (primitive restart).
+  constexpr std::uint32_t kLeastLong = 65535;
+  const bool is_short = std::all_of(values.begin(), values.end(),
+                                    [](std::uint32_t value) { return value < kLeastLong; });
+  const std::vector<std::uint16_t> shorts =
+      is_short ? std::vector<std::uint16_t>(values.begin(), values.end())
+               : std::vector<std::uint16_t>();
+  const nlohmann::json target = {{"target", kElementBuffer}};
   const std::size_t view =
-      add_view(values.data(), values.size_bytes(), {{"target", kElementBuffer}});
+      is_short ? add_view(shorts.data(), shorts.size() * sizeof(std::uint16_t), target)
+               : add_view(values.data(), values.size_bytes(), target);
   return add_accessor({{"bufferView", view},
-                       {"componentType", kUint},
+                       {"componentType", is_short ? kUshort : kUint},
                        {"type", "SCALAR"},
                        {"count", values.size()}});
 }

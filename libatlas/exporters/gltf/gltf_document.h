@@ -40,6 +40,7 @@ class GltfDocument {
   std::size_t add_uvs(std::vector<Vec2f> values);
   // Vectors of zeros, with bounds, which take no space in the file.
   std::size_t add_zeros(std::size_t count);
+  // Indices have 16 bits where that is enough.
   std::size_t add_indices(std::span<const std::uint32_t> values);
 
   // Add data of any kind, and return its number. `view` holds the properties of the buffer view

@@ -2,18 +2,32 @@
 
 #include <fmt/format.h>
 
+#include <map>
 #include <optional>
 #include <set>
 #include <string>
 #include <utility>
 
 #include "libatlas/exporters/gltf/gltf_document.h"
+#include "libatlas/scene/gltf/gltf_check.h"
 #include "libatlas/scene/gltf/gltf_instances.h"
 #include "libatlas/scene/scene.h"
 
 namespace atlas {
 using nlohmann::json;
 namespace {
+
+constexpr const char* kPointer = "KHR_animation_pointer";
+
+// Returns the pointer to what a channel of an animation moves, or null if that is no pointer.
+const json* pointer_of(const json& channel) {
+  const auto target = channel.is_object() ? channel.find("target") : channel.end();
+  if (target == channel.end() || !target->is_object()) return nullptr;
+  const json* extension = extension_at(*target, kPointer);
+  if (extension == nullptr || !extension->is_object()) return nullptr;
+  const auto pointer = extension->find("pointer");
+  return pointer != extension->end() && pointer->is_string() ? &*pointer : nullptr;
+}
 
 // Removes the mesh from a node, and its skin and weights, which the format allows only with a mesh.
 void leave_mesh(json& node) {
@@ -143,6 +157,36 @@ Roots divide_roots(const GltfSource& source, const json& nodes, const json& root
   return result;
 }
 
+// Lets animations that name a mesh by its number (KHR_animation_pointer), such as those of its
+// weights, move the copies of the mesh, too.
+void animate_copies(const GltfSource& source, const std::vector<std::size_t>& meshes,
+                    json& document) {
+  std::multimap<std::string, std::size_t> copies;  // by the beginning of pointers to the first
+  for (std::size_t i = 0; i < meshes.size(); ++i) {
+    const auto mesh = static_cast<std::size_t>(source.places[i].mesh);
+    if (meshes[i] != mesh) copies.emplace(fmt::format("/meshes/{}/", mesh), meshes[i]);
+  }
+  const auto animations = document.find("animations");
+  if (copies.empty() || animations == document.end() || !animations->is_array()) return;
+  for (json& animation : *animations) {
+    if (!animation.is_object() || !animation.contains("channels")) continue;
+    json& channels = animation["channels"];
+    for (std::size_t c = 0, count = channels.is_array() ? channels.size() : 0; c < count; ++c) {
+      const json* pointer = pointer_of(channels[c]);
+      if (pointer == nullptr) continue;
+      const auto path = pointer->get<std::string>();
+      const std::size_t length = path.find('/', std::size("/meshes/") - 1) + 1;
+      const auto [begin, end] = copies.equal_range(path.substr(0, length));
+      for (auto at = begin; at != end; ++at) {
+        json channel = channels[c];
+        channel["target"]["extensions"][kPointer]["pointer"] =
+            fmt::format("/meshes/{}/{}", at->second, path.substr(length));
+        channels.push_back(std::move(channel));
+      }
+    }
+  }
+}
+
 // Makes `roots` the root nodes of the scene that readers show.
 void set_roots(const GltfSource& source, json roots, json& document) {
   json& scenes = document["scenes"];
@@ -191,6 +235,7 @@ void place_kept_meshes(const World& world, const std::vector<std::size_t>& meshe
     roots.push_back(nodes.size());
     nodes.push_back({{"mesh", meshes[i]}});
   }
+  animate_copies(source, meshes, document);
   if (world.up != Up::y || world.metres_per_unit != 1) {
     json top = gltf_root(world, {});  // coordinates are the file's own, without an origin
     Roots divided = divide_roots(source, nodes, roots);

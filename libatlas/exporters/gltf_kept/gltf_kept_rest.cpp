@@ -37,6 +37,36 @@ void collect_extensions(const json& part, std::set<std::string>& names) {
   }
 }
 
+// Removes extensions by name from all parts of a document, and returns how many.
+std::size_t remove_extensions(json& part, const std::set<std::string>& names) {
+  std::size_t removed = 0;
+  if (!part.is_structured()) return removed;
+  const bool object = part.is_object();
+  if (object && part.contains("extensions") && part["extensions"].is_object()) {
+    for (const std::string& name : names) removed += part["extensions"].erase(name);
+    if (removed > 0 && part["extensions"].empty()) part.erase("extensions");
+  }
+  for (auto at = part.begin(); at != part.end(); ++at)
+    if (!object || at.key() != "extras") removed += remove_extensions(*at, names);
+  return removed;
+}
+
+// Drops the extensions of the whole file that hold data of their own, and with them what parts of
+// the file say by the same extensions: it refers to that data.
+void drop_file_extensions(json& document, Losses& losses) {
+  std::set<std::string> before, after;
+  const auto names = [](const json& of, std::set<std::string>& to) {
+    if (const auto at = of.find("extensions"); at != of.end() && at->is_object())
+      for (const auto& [name, extension] : at->items()) to.insert(name);
+  };
+  names(document, before);
+  drop_data_extensions(document, losses);
+  names(document, after);
+  for (const std::string& name : after) before.erase(name);
+  for (const std::string& name : before)
+    losses.add("parts that refer to the data of " + name, remove_extensions(document, {name}));
+}
+
 std::set<std::string> listed(const json& document, const char* list) {
   std::set<std::string> names;
   const auto at = document.find(list);
@@ -196,7 +226,7 @@ void keep_rest(const GltfSource& source, GltfData& data, json& document, Losses&
         extensions->contains(kGltfInstancing))
       keep_instances(data, node, losses);
   }
-  drop_data_extensions(document, losses);
+  drop_file_extensions(document, losses);
   list_extensions(source.document, document);
 }
 

@@ -1,5 +1,6 @@
 #include "libatlas/exporters/gltf_kept/gltf_kept_unit.h"
 
+#include <charconv>
 #include <cstddef>
 #include <glm/gtc/quaternion.hpp>
 #include <initializer_list>
@@ -183,6 +184,23 @@ void keep_scale_of_cameras(json& document, double metres_per_unit) {
   }
 }
 
+// Returns whether a pointer names a value that is scaled here.
+bool is_length(json& document, const std::string& pointer) {
+  const std::string name = pointer.substr(pointer.rfind('/') + 1);
+  if (pointer.starts_with("/cameras/"))
+    return name == "znear" || name == "zfar" || name == "xmag" || name == "ymag";
+  if (pointer.starts_with("/materials/")) return name == "attenuationDistance";
+  const std::string of_lights = std::string("/extensions/") + kLights + "/lights/";
+  if (!pointer.starts_with(of_lights)) return false;
+  if (name != "intensity") return name == "range";
+  json* lights = member(member(member(&document, "extensions"), kLights), "lights");
+  std::size_t number = 0;
+  std::from_chars(pointer.data() + of_lights.size(), pointer.data() + pointer.size(), number);
+  if (lights == nullptr || !lights->is_array() || number >= lights->size()) return false;
+  const json* type = member(&(*lights)[number], "type");
+  return type != nullptr && *type != "directional";  // whose unit has no length
+}
+
 // Counts animations of values that are scaled here: their own values stay.
 void count_animations(json& document, Losses& losses) {
   for_channels(document, [&](json& target) {
@@ -190,9 +208,8 @@ void count_animations(json& document, Losses& losses) {
     const json* pointer = member(member(extensions, "KHR_animation_pointer"), "pointer");
     if (pointer == nullptr || !pointer->is_string()) return;
     const auto path = pointer->get<std::string>();
-    losses.add(
-        "animations of cameras and lights, in another unit",
-        path.starts_with("/cameras/") || path.starts_with(std::string("/extensions/") + kLights));
+    losses.add("animations of cameras, lights and volumes, in another unit",
+               is_length(document, path));
   });
 }
 
