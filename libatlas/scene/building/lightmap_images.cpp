@@ -81,7 +81,7 @@ Result<std::vector<ImageF>> read_pages(const std::vector<std::string>& names, fl
   for (std::size_t page = 0; page < used.size(); ++page) {
     if (!used[page]) continue;
     if (context.cancelled()) return Status::cancelled();
-    if (page >= names.size())
+    if (page >= names.size() || names[page].empty())
       return Status(ErrorCode::not_found,
                     fmt::format("{}: names no image for page {}", builder.file, page));
     const fs::path path = lightmap_path(names[page], builder.file);
