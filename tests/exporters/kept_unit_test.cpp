@@ -270,5 +270,35 @@ TEST(KeptUnit, SkinnedMeshesThatMoveOtherThingsAreScaled) {
   EXPECT_EQ(document["nodes"][4]["children"], (json{0, 1}));
 }
 
+// The reader takes properties of the wrong type as absent. Cameras of such nodes are placed
+// likewise.
+TEST(KeptUnit, NodesWithWrongPropertiesHaveNone) {
+  const json cases[] = {{{"translation", {1}}},     {{"translation", {1, "x", 2}}},
+                        {{"translation", "x"}},     {{"translation", json::object()}},
+                        {{"translation", nullptr}}, {{"rotation", {0, 0, 1}}},
+                        {{"rotation", nullptr}},    {{"rotation", {0, 0, 0, 0}}},
+                        {{"children", nullptr}},    {{"children", json::object()}},
+                        {{"children", "x"}},        {{"children", json::array()}}};
+  for (const json& wrong : cases) {
+    for (const bool shows : {false, true}) {
+      const TempFolder folder;
+      Gltf gltf = rich();
+      json node = {{"camera", 0}, {"name", "bad"}};
+      if (shows) node["mesh"] = 0;
+      node.update(wrong);
+      gltf.j["nodes"].push_back(std::move(node));
+      gltf.j["scenes"][0]["nodes"] = {0, 6};
+      const json document = scaled(folder, gltf, kCentimetre, {}, Up::z);
+      if (!shows) {  // it is beside the node that scales
+        const glm::dmat4 place = places_of_cameras(document).at("bad");
+        EXPECT_EQ(glm::dvec3(place[3]), glm::dvec3(0)) << wrong;
+        EXPECT_NEAR(glm::determinant(place), 1, 1e-9) << wrong;
+      }
+      for (const json& kept : document["nodes"])
+        EXPECT_TRUE(!kept.contains("children") || !kept["children"].empty()) << wrong;
+    }
+  }
+}
+
 }  // namespace
 }  // namespace atlas::test

@@ -54,8 +54,9 @@ std::string texcoord_name(std::int64_t set) {
 
 class FileWriter {
  public:
-  FileWriter(const World& world, GltfDocument& document)
+  FileWriter(const World& world, const fs::path& path, GltfDocument& document)
       : world_(world),
+        path_(path),
         scene_(*world.scene),
         source_(*scene_.source),
         document_(document),
@@ -109,6 +110,7 @@ class FileWriter {
     document_.name_lightmap(world_, set_);
     json& asset = document_.json["asset"];
     asset = merge_assets(source_.document.value("asset", json()), asset, new_sets);
+    if (!world_.lightmap) count_absent_images(asset, path_, losses_);
   }
 
   const tinygltf::Mesh& model_mesh(std::size_t mesh) const { return source_.model.meshes[mesh]; }
@@ -349,6 +351,7 @@ class FileWriter {
   }
 
   const World& world_;
+  const fs::path& path_;
   const Scene& scene_;
   const GltfSource& source_;
   GltfDocument& document_;
@@ -367,7 +370,7 @@ Result<WorldFile> write_gltf_file(const World& world, const fs::path& path, Atom
   WorldFile result;
   GltfDocument document(world, lower_extension(path) == ".glb");
   GltfTextures textures(*world.scene, path, document, files);
-  FileWriter writer(world, document);
+  FileWriter writer(world, path, document);
   if (Status s = writer.run(textures, context, result); !s.ok()) return s;
   if (Status s = document.write(path, files, result); !s.ok()) return s;
   return result;

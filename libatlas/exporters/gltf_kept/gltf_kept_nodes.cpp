@@ -78,7 +78,11 @@ class Walk {
     visited_[number] = true;
     json children = show(own, visits_++);
     for (const int child : source_.model.nodes[number].children) children.push_back(visit(child));
-    if (!children.empty()) nodes_[own]["children"] = std::move(children);
+    // Where there are none, the source may have something else than a list.
+    if (children.empty())
+      nodes_[own].erase("children");
+    else
+      nodes_[own]["children"] = std::move(children);
     return own;
   }
 

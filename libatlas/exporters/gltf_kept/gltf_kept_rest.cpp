@@ -6,6 +6,7 @@
 #include <string_view>
 #include <vector>
 
+#include "libatlas/scene/building/lightmap_images.h"
 #include "libatlas/scene/gltf/gltf_instances.h"
 #include "libatlas/scene/uv_page.h"
 
@@ -182,19 +183,31 @@ json merge_assets(const json& source, const json& own, const std::set<std::int64
   const json added = own.value("extras", json::object());
   if (added.contains("title") && !extras.contains("title")) extras["title"] = added["title"];
   for (const json& line : added.value("info", json::array())) info.push_back(line);
-  // An earlier lightmap whose uvs are replaced is none any more.
-  if (const auto map = extras.find("lightmap"); ours && map != extras.end())
-    if (!map->is_object() || new_sets.contains(map->value("texCoord", std::int64_t{-1})))
-      extras.erase(map);
+  // An earlier lightmap whose uvs are replaced is none any more. Others than ours keep what is none
+  // of ours.
+  if (const auto map = extras.find("lightmap"); map != extras.end()) {
+    const json set = member(*map, "texCoord");
+    const bool named = set.is_number_integer();
+    if (named ? new_sets.contains(set.get<std::int64_t>()) : ours) extras.erase(map);
+  }
   if (added.contains("lightmap")) extras["lightmap"] = added["lightmap"];
   merged["version"] = own["version"];
   merged["generator"] = own["generator"];
   return merged;
 }
 
+void count_absent_images(const json& asset, const std::filesystem::path& file, Losses& losses) {
+  const json map = member(member(asset, "extras"), "lightmap");
+  std::error_code error;  // a file that cannot be examined is not there
+  for (const char* list : {"images", "linear"})
+    for (const json& name : member(map, list))
+      if (name.is_string() && !std::filesystem::exists(lightmap_path(name, file), error))
+        losses.add("images of the lightmap, which are not beside the file (copy them there)");
+}
+
 bool replaces_lightmap(const json& source, const World& world, std::int64_t uv_set) {
   const json map = member(member(member(source, "asset"), "extras"), "lightmap");
-  return map.is_object() && (world.lightmap || member(map, "texCoord") == json(uv_set));
+  return world.lightmap || member(map, "texCoord") == json(uv_set);
 }
 
 void drop_lightmap_page(json& primitive) {

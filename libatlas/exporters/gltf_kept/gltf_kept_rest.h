@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
 #include <set>
 
 #include "libatlas/exporters/gltf_kept/gltf_data.h"
@@ -16,6 +17,11 @@ namespace atlas {
 // `new_sets` is left out in any case: these hold other uvs now.
 nlohmann::json merge_assets(const nlohmann::json& source, const nlohmann::json& own,
                             const std::set<std::int64_t>& new_sets);
+
+// Counts the images that an asset names of an earlier export's lightmap, and that are not there for
+// `file`.
+void count_absent_images(const nlohmann::json& asset, const std::filesystem::path& file,
+                         Losses& losses);
 
 // Returns whether the lightmap that an earlier export has named in the source is none any more: the
 // world has one of its own, or uvs in that set.

@@ -1,5 +1,6 @@
 #include "libatlas/exporters/gltf_kept/gltf_kept_unit.h"
 
+#include <algorithm>
 #include <charconv>
 #include <cstddef>
 #include <glm/gtc/quaternion.hpp>
@@ -122,19 +123,30 @@ std::set<std::size_t> animated_nodes(json& document) {
   return nodes;
 }
 
-glm::dvec3 vector_of(const json& node, const char* key) {
-  const json v = node.value(key, json{0, 0, 0});
-  return {v.at(0), v.at(1), v.at(2)};
+// Returns the numbers of a node's property. The reader takes one that is anything else as absent,
+// and so does this, which then returns `absent`.
+json numbers_of(const json& node, const char* key, const json& absent) {
+  const auto at = node.find(key);
+  const bool good =
+      at != node.end() && at->is_array() && at->size() == absent.size() &&
+      std::all_of(at->begin(), at->end(), [](const json& v) { return v.is_number(); });
+  return good ? *at : absent;
+}
+
+glm::dvec3 translation_of(const json& node) {
+  const json v = numbers_of(node, "translation", {0, 0, 0});
+  return {v[0], v[1], v[2]};
 }
 
 glm::dquat rotation_of(const json& node) {
-  const json q = node.value("rotation", json{0, 0, 0, 1});
-  return {q.at(3), q.at(0), q.at(1), q.at(2)};
+  const json q = numbers_of(node, "rotation", {0, 0, 0, 1});
+  const glm::dquat turn(q[3], q[0], q[1], q[2]);
+  return glm::length(turn) > 0 ? glm::normalize(turn) : glm::dquat(1, 0, 0, 0);
 }
 
 // Moves a node from below `top` to beside it: places it where it was, without the scale of `top`.
 void place_beside(const json& top, double scale, json& node) {
-  const glm::dvec3 t = scale * (rotation_of(top) * vector_of(node, "translation"));
+  const glm::dvec3 t = scale * (rotation_of(top) * translation_of(node));
   const glm::dquat q = glm::normalize(rotation_of(top) * rotation_of(node));
   node["translation"] = {t.x, t.y, t.z};
   if (top.contains("rotation") || node.contains("rotation"))

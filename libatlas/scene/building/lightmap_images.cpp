@@ -28,14 +28,6 @@ ImageF three_channels(const Image<T>& image, const Value& value_of) {
   return rgb;
 }
 
-// Returns the file that a name means.
-fs::path path_of(const std::string& name, const SceneBuilder& builder) {
-  const fs::path folder = fs::path(builder.file).parent_path();
-  std::error_code error;  // a file that cannot be examined is not there
-  const fs::path plain = folder / name, path = folder / decode_uri(name);
-  return !fs::exists(path, error) && fs::exists(plain, error) ? plain : path;
-}
-
 // Reads linear values, of which those that are no light become 0.
 Result<ImageF> read_linear(const fs::path& path, SceneBuilder& builder) {
   auto image = read_image_float(path);
@@ -49,18 +41,35 @@ Result<ImageF> read_linear(const fs::path& path, SceneBuilder& builder) {
   return three_channels(*image, [](float value) { return value; });
 }
 
-// Reads a page, as an image of linear values if `white` is 0. Checks first whether the file exists,
-// because asking the decoder for it would load a large library.
-Result<ImageF> read_page(const fs::path& path, float white, SceneBuilder& builder) {
+Status too_large(const fs::path& path, int width, int height) {
+  return {ErrorCode::unsupported,
+          fmt::format("{}: its {} x {} texels and those of the pages before are more than {}",
+                      path.string(), width, height, kMostTexels)};
+}
+
+// How a page is read: as an image of linear values if `white` is 0, and with no more than `room`
+// texels.
+struct PageWanted {
+  float white;
+  std::size_t room;
+};
+
+// Reads a page. Checks first whether the file exists, because asking the decoder for it would load
+// a large library.
+Result<ImageF> read_page(const fs::path& path, const PageWanted& wanted, SceneBuilder& builder) {
   std::error_code error;
   if (!fs::is_regular_file(path, error))
     return Status(ErrorCode::not_found, path.string() + ": there is no such file");
   builder.files.push_back(path);
-  if (white == 0) return read_linear(path, builder);
-  const auto image = read_texture(path);
-  if (!image.ok()) return image.status();
-  return three_channels(image->image,
-                        [white](std::uint8_t code) { return white * srgb_decode8(code); });
+  if (wanted.white == 0) return read_linear(path, builder);
+  const auto read = read_texture(path);
+  if (!read.ok()) return read.status();
+  // Its floats take up to twelve times as much memory as it does.
+  const Image8& image = read->image;
+  if (std::size_t(image.width) * std::size_t(image.height) > wanted.room)
+    return too_large(path, image.width, image.height);
+  return three_channels(image,
+                        [&](std::uint8_t code) { return wanted.white * srgb_decode8(code); });
 }
 
 // Likewise, reads the pages that are used.
@@ -72,18 +81,14 @@ Result<std::vector<ImageF>> read_pages(const std::vector<std::string>& names, fl
   for (std::size_t page = 0; page < used.size(); ++page) {
     if (!used[page]) continue;
     if (context.cancelled()) return Status::cancelled();
-    if (page >= names.size())
+    if (page >= names.size() || names[page].empty())
       return Status(ErrorCode::not_found,
                     fmt::format("{}: names no image for page {}", builder.file, page));
-    const fs::path path = path_of(names[page], builder);
-    auto image = read_page(path, white, builder);
+    const fs::path path = lightmap_path(names[page], builder.file);
+    auto image = read_page(path, {white, kMostTexels - texels}, builder);
     if (!image.ok()) return image.status();
     texels += image->texels.size() / 3;
-    if (image->empty() || texels > kMostTexels)
-      return Status(
-          ErrorCode::unsupported,
-          fmt::format("{}: its {} x {} texels and those of the pages before are more than {}",
-                      path.string(), image->width, image->height, kMostTexels));
+    if (image->empty() || texels > kMostTexels) return too_large(path, image->width, image->height);
     pages[page] = std::move(*image);
   }
   return pages;
@@ -91,10 +96,17 @@ Result<std::vector<ImageF>> read_pages(const std::vector<std::string>& names, fl
 
 }  // namespace
 
+fs::path lightmap_path(const std::string& name, const fs::path& file) {
+  const fs::path folder = file.parent_path();
+  std::error_code error;  // a file that cannot be examined is not there
+  const fs::path plain = folder / name, path = folder / decode_uri(name);
+  return !fs::exists(path, error) && fs::exists(plain, error) ? plain : path;
+}
+
 void note_lightmap(const LightmapImages& named, SceneBuilder& builder) {
   for (const auto* names : {&named.images, &named.linear})
     for (const std::string& name : *names)
-      if (!name.empty()) builder.other_files.push_back(path_of(name, builder));
+      if (!name.empty()) builder.other_files.push_back(lightmap_path(name, builder.file));
 }
 
 Result<std::vector<ImageF>> read_lightmap(const LightmapImages& named,

@@ -1,6 +1,7 @@
 // Internal: reads the images of a scene's lightmap.
 #pragma once
 
+#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -15,6 +16,9 @@ struct LightmapImages {
   std::vector<std::string> images, linear;  // a page each; either may be empty
   float white = 1;                          // the light that `images` show as 1
 };
+
+// Returns the file that such a name in `file` means.
+std::filesystem::path lightmap_path(const std::string& name, const std::filesystem::path& file);
 
 // Notes the images as files that the scene names. Those that are read, too, will be listed as such
 // only.

@@ -13,6 +13,7 @@
 #include "libatlas/scene/files/file_bytes.h"
 #include "libatlas/scene/gltf/gltf_check.h"
 #include "libatlas/scene/gltf/gltf_draco.h"
+#include "libatlas/scene/gltf/gltf_lightmap.h"
 #include "libatlas/scene/gltf/gltf_meshopt.h"
 
 namespace atlas {
@@ -279,7 +280,8 @@ Result<tinygltf::Model> load_gltf(const fs::path& path, const GltfLoading& loadi
   const std::set<int> fallbacks = fill_fallback_buffers(parsed, parts->container);
   std::vector<GltfDracoPart> draco;
   if (Status s = describe_draco(path, parsed, draco); !s.ok()) return s;
-  const bool changed = !fallbacks.empty() || !draco.empty();
+  const bool marked = loading.lightmap && mark_lightmap_values(parsed);
+  const bool changed = !fallbacks.empty() || !draco.empty() || marked;
   const std::string text = changed ? parsed.dump() : std::string();
   if (changed) {
     parts->json = text;

@@ -37,6 +37,7 @@ struct GltfLoading {
   DefectReport& defects;  // gets bytes that are not UTF-8
   std::vector<std::filesystem::path>& buffers;  // gets the paths of buffers that are files
   nlohmann::json* document = nullptr;           // if not null, becomes the file's JSON, an object
+  bool lightmap = false;  // whether what the file says of a lightmap is read, see gltf_lightmap.h
 };
 
 // Parses .gltf and .glb and loads the buffers. Images stay encoded: those in data URIs are in

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <limits>
 #include <utility>
 
 #include "libatlas/core/is_finite.h"
@@ -31,7 +32,40 @@ std::size_t count_of(const tinygltf::Model& model, int accessor) {
   return exists ? model.accessors[std::size_t(accessor)].count : 0;
 }
 
+// Returns the member of an object; null if there is none, or `part` is no object.
+nlohmann::json* member(nlohmann::json* part, const char* key) {
+  if (part == nullptr || !part->is_object()) return nullptr;
+  const auto at = part->find(key);
+  return at == part->end() ? nullptr : &*at;
+}
+
+bool mark(nlohmann::json* value) {
+  if (value == nullptr) return false;
+  using Int = std::numeric_limits<int>;
+  const bool empty = value->is_null() || (value->is_structured() && value->empty());
+  // As a double, since integers may also be unsigned ones of 64 bits.
+  const double number = value->is_number_integer() ? value->get<double>() : 0;
+  const bool keeps = !empty && number >= Int::min() && number <= Int::max();
+  if (!keeps) *value = false;
+  return !keeps;
+}
+
 }  // namespace
+
+bool mark_lightmap_values(nlohmann::json& document) {
+  nlohmann::json* const map = member(member(member(&document, "asset"), "extras"), "lightmap");
+  bool any = false;
+  for (const char* key : {"texCoord", "white"}) any |= mark(member(map, key));
+  for (const char* key : {"images", "linear"})
+    if (nlohmann::json* names = member(map, key); names != nullptr && names->is_array())
+      for (nlohmann::json& name : *names) any |= mark(&name);
+  nlohmann::json* const meshes = map == nullptr ? nullptr : member(&document, "meshes");
+  if (meshes == nullptr || !meshes->is_array()) return any;
+  for (nlohmann::json& mesh : *meshes)
+    if (nlohmann::json* parts = member(&mesh, "primitives"); parts != nullptr && parts->is_array())
+      for (nlohmann::json& part : *parts) any |= mark(member(member(&part, "extras"), "lightmap"));
+  return any;
+}
 
 GltfLightmap::GltfLightmap(const tinygltf::Model& model, SceneBuilder& builder)
     : model_(model), builder_(builder) {

@@ -17,6 +17,11 @@
 
 namespace atlas {
 
+// Replaces the values of a file's lightmap that tinygltf drops or changes by `false`, which is as
+// wrong, and stays: null and empty ones, which would move the names behind them in a list, and
+// integers beyond 32 bits, which would name another page. Returns whether there are any.
+bool mark_lightmap_values(nlohmann::json& document);
+
 // Collects what primitives say of the lightmap, then loads its pages, then takes the triangles. If
 // the file names none, the builder does not want it (SceneBuilder::wants_lightmap), or it cannot be
 // used, which is a defect, all calls do nothing. The images are noted as files of the scene in any
