@@ -86,6 +86,9 @@ struct WorldFile {
   // attribute that holds the new uvs ("TEXCOORD_1"; "vt" in OBJ).
   std::vector<std::string> not_kept = {};
   std::string uv_set = {};
+  // For a scene of glTF in glTF: meshes that stay as they were, because the scene does not show
+  // them.
+  std::size_t meshes_without_uvs = 0;
   // To be added to the written coordinates; zero except in VRML, see there.
   Vec3d origin_left_out = {};
   // Only glTF: whether the world is so far from zero that a node of its own, kFarOriginNode, adds

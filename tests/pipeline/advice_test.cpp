@@ -197,10 +197,9 @@ TEST(Advice, TrianglesWithoutTheLightOfOthersAreCounted) {
   const TempFolder folder;
   const std::string bare = "v 0 0 1\nv 1 0 1\nv 0 1 1\n", faces = "f 1 2 3\nf 4 5 6\nf 1 2 6\n";
   const auto advice = [&](const std::string& others, bool keep, bool charts_only) {
-    const auto scene =
-        read_scene(folder.write("s.obj", "v 0 0 0 1 1 1\nv 1 0 0 1 1 1\nv 0 1 0 2 2 2\n" + more +
-                                             bare + faces),
-                   {.keep_scene = keep}, {});
+    const auto scene = read_scene(
+        folder.write("s.obj", "v 0 0 0 1 1 1\nv 1 0 0 1 1 1\nv 0 1 0 2 2 2\n" + others + faces),
+        {.keep_scene = keep}, {});
     EXPECT_TRUE(scene.ok()) << scene.status().message();
     ExportOptions options;
     options.target = folder / "w.obj";
