@@ -111,11 +111,9 @@ std::vector<std::filesystem::path> images_there(const Scene& scene, const Export
   const auto folder = target.has_parent_path() ? target.parent_path() : std::filesystem::path(".");
   std::vector<std::filesystem::path> there;
   std::error_code error;
-  if (options.keep_scene) {
-    for (std::size_t i = 0; lower_extension(target) == ".gltf" && i < scene.textures.size(); ++i) {
-      std::filesystem::path image = scene_texture_path(scene, i, target);
+  if (options.keep_scene && lower_extension(target) == ".gltf") {
+    for (std::filesystem::path& image : scene_texture_paths(scene, target))
       if (std::filesystem::exists(image, error)) there.push_back(std::move(image));
-    }
   }
   if (scene.lit() && !options.charts_only) {
     std::filesystem::directory_iterator at(folder, error);
@@ -169,6 +167,10 @@ Status check_files_stay(const LoadedScene& loaded, const app::ExportCommand& com
     for (const std::filesystem::path& output :
          {target, file_beside(target), command.report, command.depfile})
       if (Status s = app::check_output(output, {file}); !s.ok()) return s;
+  if (command.options.keep_scene && lower_extension(target) == ".gltf")
+    for (const std::filesystem::path& image : scene_texture_paths(loaded.scene, target))
+      for (const std::filesystem::path& output : {command.report, command.depfile})
+        if (Status s = app::check_output(output, {image}); !s.ok()) return s;
   known.insert(known.end(),
                {command.scene, command.read.illumination_file, command.report, command.depfile});
   for (const std::filesystem::path& image : images_there(loaded.scene, command.options))

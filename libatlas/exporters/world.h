@@ -86,6 +86,9 @@ struct WorldFile {
   // attribute that holds the new uvs ("TEXCOORD_1"; "vt" in OBJ).
   std::vector<std::string> not_kept = {};
   std::string uv_set = {};
+  // For a scene of glTF in glTF: meshes that stay as they were, because the scene does not show
+  // them.
+  std::size_t meshes_without_uvs = 0;
   // To be added to the written coordinates; zero except in VRML, see there.
   Vec3d origin_left_out = {};
   // Only glTF: whether the world is so far from zero that a node of its own, kFarOriginNode, adds
@@ -158,10 +161,11 @@ Status check_world_extension(const std::filesystem::path& path);
 // it (bad_option).
 bool holds_scene(const std::filesystem::path& path);
 
-// Returns the image file that write_gltf() makes of a texture of World::scene beside the .gltf
-// `target`: NAME_texture<i>.png or .jpg.
-std::filesystem::path scene_texture_path(const Scene& scene, std::size_t texture,
-                                         const std::filesystem::path& target);
+// Returns the image files that write_gltf() makes of a scene's textures, if `target` is a .gltf:
+// NAME_texture<i>.png or .jpg, where i counts Scene::textures; or, of a scene that has a source,
+// the images of its file. These may have the extensions of other formats.
+std::vector<std::filesystem::path> scene_texture_paths(const Scene& scene,
+                                                       const std::filesystem::path& target);
 
 // Returns whether a world of this extension stores where a viewer starts. The others ignore
 // World::viewpoint, which need not be chosen for them.

@@ -320,4 +320,21 @@ std::vector<std::string> advice_on_materials(const Scene& scene, Quantity quanti
   return lines;
 }
 
+std::vector<std::string> advice_on_missing_light(const Scene& scene, const DefectReport& defects,
+                                                 const ExportOptions& options) {
+  if (scene.illumination.empty() || defects.count(DefectKind::illumination_missing) == 0) return {};
+  std::size_t dark = 0;
+  for (std::size_t k = 0; k < scene.indices.size(); k += 3)
+    dark += std::all_of(&scene.indices[k], &scene.indices[k] + 3,
+                        [&](std::uint32_t v) { return scene.illumination[v] == Vec3f{}; });
+  if (dark == 0) return {};
+  return {fmt::format(
+      "{} of {} triangles have no light, which other vertices have, so pages show them black (give "
+      "all vertices light; if those colours are paint, ExportOptions::charts_only makes uvs "
+      "without light{})",
+      dark, scene.triangle_count(),
+      options.keep_scene ? " and leaves the colours where they are"
+                         : ", and with ExportOptions::keep_scene beside the colours")};
+}
+
 }  // namespace atlas

@@ -18,4 +18,9 @@ std::vector<std::string> advice_on(const ExportReport& report, const ExportOptio
 // or have holes, and, unless the quantity already includes it, that they emit light.
 std::vector<std::string> advice_on_materials(const Scene& scene, Quantity quantity);
 
+// Returns a line if triangles have no light at any corner, because their vertices lack what others
+// of the scene have: such values may be paint rather than light.
+std::vector<std::string> advice_on_missing_light(const Scene& scene, const DefectReport& defects,
+                                                 const ExportOptions& options);
+
 }  // namespace atlas

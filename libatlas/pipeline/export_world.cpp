@@ -84,6 +84,9 @@ class Export {
     report_.carried_out = true;
     for (std::string& line : advice_on(report_, options_))
       report_.advice.push_back(std::move(line));
+    if (plan_.bake)
+      for (std::string& line : advice_on_missing_light(scene_, report_.defects, options_))
+        report_.advice.push_back(std::move(line));
     if (plan_.bake && !options_.keep_scene) {
       for (std::string& line : advice_on_materials(scene_, options_.quantity))
         report_.advice.push_back(std::move(line));

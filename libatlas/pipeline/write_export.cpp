@@ -161,6 +161,15 @@ std::string on_far_origin(const World& world) {
       world.origin.x, world.origin.y, world.origin.z, kFarOriginNode);
 }
 
+// Returns advice on meshes of hidden nodes, of other scenes and of no node.
+std::string on_meshes_without_uvs(std::size_t count) {
+  return fmt::format(
+      "{} {} as before, without new uvs, since the scene does not show {} (show {} there to have "
+      "new uvs)",
+      count, count == 1 ? "mesh stays" : "meshes stay", count == 1 ? "it" : "them",
+      count == 1 ? "it" : "them");
+}
+
 std::string writing_note(const ExportToWrite& made, const WorldFile& written) {
   const Vec3d& left_out = written.origin_left_out;
   if (made.options.keep_scene)
@@ -186,6 +195,8 @@ Result<StageOutcome> write_export(const ExportToWrite& made, AtomicFiles& files,
   Result<WorldFile> world_file = write_world(world, made.options.target, files, context);
   if (!world_file.ok()) return world_file.status();
   report.not_kept = world_file->not_kept;
+  if (world_file->meshes_without_uvs > 0)
+    report.advice.push_back(on_meshes_without_uvs(world_file->meshes_without_uvs));
   if (world_file->far_origin) report.advice.push_back(on_far_origin(world));
   if (embeds_images(made.options.target) && !made.options.keep_scene) {
     for (const auto& image : made.image_sources) files.discard(image);

@@ -34,8 +34,8 @@ struct ExportToWrite {
 };
 
 // Writes the world and commits `files`, which hold the pages' images. Adds to the report what was
-// written, what the format had no room for, and advice on a place too far from zero. Errors:
-// bad_input, io, cancelled.
+// written, what the format had no room for, and advice on a place too far from zero and on meshes
+// without new uvs. Errors: bad_input, io, cancelled.
 Result<StageOutcome> write_export(const ExportToWrite& made, AtomicFiles& files,
                                   ExportReport& report, const Context& context);
 

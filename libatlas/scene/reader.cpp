@@ -89,6 +89,7 @@ Result<LoadedScene> read_scene(const fs::path& path, const ReadOptions& given,
   if (result.ok()) result->files = std::move(builder.files);
   if (result.ok() && source) {
     source->image_texture = std::move(builder.texture_numbers);
+    source->image_files = std::move(builder.image_files);
     source->other_light = other_light;
     source->positions_mark = positions_mark(result->scene);
   }

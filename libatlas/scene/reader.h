@@ -31,7 +31,9 @@ struct ReadOptions {
   bool normals = false;  // true: reads the file's normals into Scene::normals
   // Keeps what Scene has no arrays for, in Scene::source (glTF) and Material::mtl_lines (OBJ), and
   // reads Scene::vertex_opacity (alpha of PLY's and OFF's vertices and of glTF's COLOR_0). All
-  // images of a glTF file are then textures, in the file's order. Scene::not_read counts what the
+  // images of a glTF file are then textures, in the file's order, except those in formats of
+  // extensions (EXT_texture_webp) that no base colour needs, or that cannot be decoded: the source
+  // holds their files. Scene::not_read counts what the
   // arrays lack in any case. An export to glTF refuses a scene with a source whose positions have
   // been changed, see Scene::source.
   bool rest = false;

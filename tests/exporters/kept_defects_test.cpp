@@ -27,6 +27,59 @@ TEST(KeptDefects, AMaterialThatIsNotThereIsLeftOut) {
   }
 }
 
+// What names a mesh by its number names the same one afterwards, or nothing.
+TEST(KeptDefects, MeshesAreFollowedWhenOthersAreLeftOut) {
+  const TempFolder folder;
+  Gltf gltf = textured(folder);
+  const json attributes = gltf.j["meshes"][0]["primitives"][0]["attributes"];
+  gltf.j["meshes"] = json::array(
+      {{{"name", "broken"},
+        {"primitives", json::array({{{"attributes", attributes},
+                                     {"indices", gltf.indices<std::uint16_t>({50, 51, 52})}}})}},
+       gltf.j["meshes"][0]});
+  gltf.j["meshes"][1]["name"] = "whole";
+  const auto shape = [](int mesh) {
+    return json{{"type", "trimesh"}, {"trimesh", {{"mesh", mesh}}}};
+  };
+  gltf.j["extensions"]["OMI_physics_shape"]["shapes"] = {shape(0), shape(1)};
+  gltf.j["extras"] = {{"mesh", 1}, {"extensions", {{"mesh", 1}}}};
+  const int times = gltf.floats({0, 1}, "SCALAR", 1);
+  const auto pointer = [](const std::string& to) {
+    return json{
+        {"sampler", 0},
+        {"target",
+         {{"path", "pointer"}, {"extensions", {{"KHR_animation_pointer", {{"pointer", to}}}}}}}};
+  };
+  const auto weights = [](int node) {
+    return json{{"sampler", 0}, {"target", {{"path", "weights"}, {"node", node}}}};
+  };
+  const json samplers = json::array({{{"input", times}, {"output", times}}});
+  gltf.j["animations"] = json::array(
+      {{{"samplers", samplers},
+        {"channels",
+         {pointer("/meshes/0/weights"), pointer("/meshes/1/weights"), weights(0), weights(1),
+          pointer("/nodes/0/weights/0"), pointer("/nodes/0/translation"), pointer("/meshes/1x")}}},
+       {{"samplers", samplers}, {"channels", json::array({weights(0)})}}});
+  gltf.j["nodes"] = json::array({{{"mesh", 0}}, {{"mesh", 1}}});
+  gltf.j["scenes"][0]["nodes"] = {0, 1};
+  const WorldFile written = keep(folder.write("s.glb", gltf.glb()), folder / "w.glb");
+  EXPECT_EQ(written.not_kept,
+            (std::vector<std::string>{
+                "4 x animations of meshes of which no primitive is left",
+                "1 x meshes of which no primitive is left",
+                "1 x parts of extensions that name a mesh of which no primitive is left"}));
+  const json after = GltfOracle(folder / "w.glb").document;
+  EXPECT_EQ(after["meshes"][0]["name"], "whole");
+  ASSERT_EQ(after["animations"].size(), 1u);
+  EXPECT_EQ(after["animations"][0]["channels"],
+            (json{pointer("/meshes/0/weights"), weights(1), pointer("/nodes/0/translation"),
+                  pointer("/meshes/1x")}));
+  const json& shapes = after["extensions"]["OMI_physics_shape"]["shapes"];
+  EXPECT_EQ(shapes[0]["trimesh"], json::object());
+  EXPECT_EQ(shapes[1], shape(0));
+  EXPECT_EQ(after["extras"], gltf.j["extras"]);
+}
+
 // The format has no mesh without a primitive.
 TEST(KeptDefects, MeshesOfDefectsOnlyAreLeftOut) {
   const TempFolder folder;

@@ -94,8 +94,8 @@ TEST(KeptLook, ImagesSayWhatTheyAre) {
   EXPECT_EQ(images[0]["mimeType"], "image/jpeg");
   EXPECT_EQ(images[1]["mimeType"], "image/png");
   gltf_of(scene, folder / "a w#.gltf");
-  EXPECT_EQ(scene_texture_path(scene, 0, folder / "a w#.gltf").extension(), ".jpg");
-  const auto png = scene_texture_path(scene, 1, folder / "a w#.gltf");
+  EXPECT_EQ(scene_texture_paths(scene, folder / "a w#.gltf")[0].extension(), ".jpg");
+  const auto png = scene_texture_paths(scene, folder / "a w#.gltf")[1];
   EXPECT_EQ(png.filename().string().find_first_of(" #"), std::string::npos);
   const auto back = read_image8(png);
   ASSERT_TRUE(back.ok()) << back.status().message();

@@ -90,6 +90,52 @@ TEST(KeptGltf, InstancesHaveTheWeightsOfTheirNode) {
   }
 }
 
+// An animation of the weights moves all instances. Nodes that are animated have no matrix.
+TEST(KeptGltf, AnimationsOfWeightsMoveTheInstances) {
+  const TempFolder folder;
+  Gltf gltf;
+  const int positions = gltf.floats({0, 0, 0, 1, 0, 0, 0, 1, 0}, "VEC3", 3);
+  const float h = std::sqrt(0.5f);
+  const json attributes = {
+      {"TRANSLATION", gltf.floats({0, 0, 0, 5, 0, 0, 1, 2, 3, 0, 0, 9}, "VEC3", 3)},
+      {"ROTATION", gltf.floats({0, 0, 0, 1, h, 0, 0, h, 0, h, 0, -h, 0, 0, 1, 0}, "VEC4", 4)},
+      {"SCALE", gltf.floats({1, 1, 1, 2, 3, 4, 1, -2, 1, -1, -2, -3}, "VEC3", 3)}};
+  gltf.single({{"attributes", {{"POSITION", positions}}},
+               {"targets", json::array({{{"POSITION", positions}}})}},
+              {{"weights", {0.5}},
+               {"extensions", {{"EXT_mesh_gpu_instancing", {{"attributes", attributes}}}}}});
+  gltf.j["nodes"].push_back({{"mesh", 0}});
+  gltf.j["scenes"][0]["nodes"] = {0, 1};
+  keep(folder.write("s.glb", gltf.glb()), folder / "rest.glb");
+  json by_pointer = {{"sampler", 0}, {"target", {{"path", "pointer"}}}};
+  by_pointer["target"]["extensions"]["KHR_animation_pointer"]["pointer"] = "/nodes/0/weights/0";
+  const auto channel = [](int node, const char* path) {
+    return json{{"sampler", 0}, {"target", {{"path", path}, {"node", node}}}};
+  };
+  const int times = gltf.floats({0, 1}, "SCALAR", 1);
+  gltf.j["animations"] = json::array(
+      {{{"samplers", json::array({{{"input", times}, {"output", times}}})},
+        {"channels",
+         {channel(0, "weights"), channel(1, "weights"), channel(0, "scale"), by_pointer}}}});
+  EXPECT_TRUE(keep(folder.write("s.glb", gltf.glb()), folder / "w.glb").not_kept.empty());
+  const GltfOracle rest(folder / "rest.glb"), after(folder / "w.glb");
+  json expected = json::array();
+  for (const int n : {2, 3, 4, 5}) expected.push_back(channel(n, "weights"));
+  expected.insert(expected.end(), {channel(1, "weights"), channel(0, "scale")});
+  for (const char* n : {"2", "3", "4", "5"}) {
+    by_pointer["target"]["extensions"]["KHR_animation_pointer"]["pointer"] =
+        std::string("/nodes/") + n + "/weights/0";
+    expected.push_back(by_pointer);
+  }
+  EXPECT_EQ(after.document["animations"][0]["channels"], expected);
+  for (const json& node : after.document["nodes"]) EXPECT_FALSE(node.contains("matrix"));
+  EXPECT_EQ(rest.document["nodes"][3].contains("matrix"), true);
+  const auto a = rest.triangles(), b = after.triangles();
+  ASSERT_EQ(a.size(), b.size());
+  for (std::size_t t = 0; t < a.size(); ++t)
+    for (std::size_t i = 0; i < 16; ++i) EXPECT_NEAR(a[t].matrix[i], b[t].matrix[i], 1e-6);
+}
+
 // Animations may name a mesh, which becomes one for each node that shows it.
 TEST(KeptGltf, AnimationsOfASharedMeshMoveItsCopies) {
   const TempFolder folder;
@@ -114,7 +160,7 @@ TEST(KeptGltf, AnimationsOfASharedMeshMoveItsCopies) {
   EXPECT_EQ(after["nodes"][0]["mesh"], 0);
   EXPECT_EQ(after["nodes"][1]["mesh"], 1);
   json channels = gltf.j["animations"][0]["channels"];
-  channels.push_back(channel("/meshes/1/weights"));
+  channels.insert(channels.begin() + 1, channel("/meshes/1/weights"));
   EXPECT_EQ(after["animations"][0]["channels"], channels);
 }
 

@@ -179,7 +179,7 @@ TEST(KeptScene, TexturesGoWithAGltf) {
     const auto raw = read_scene(folder / name, {.encoded_textures = true}, {});
     EXPECT_EQ(bytes_of(raw->scene.textures[1]), bytes_of(scene.textures[0]));
     if (name[0] != 'm') continue;
-    EXPECT_EQ(TempFolder::read(scene_texture_path(scene, 0, folder / name)),
+    EXPECT_EQ(TempFolder::read(scene_texture_paths(scene, folder / name)[0]),
               bytes_of(scene.textures[0]));
   }
 }

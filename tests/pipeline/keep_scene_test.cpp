@@ -353,6 +353,30 @@ TEST(KeepScene, WhatWasNotReadIsToldAsNotKept) {
   }
 }
 
+// A mesh that is not shown is kept, so it is not among what is not.
+TEST(KeepScene, MeshesThatAreNotShownAreToldApart) {
+  const TempFolder folder;
+  Gltf gltf;
+  gltf.single(
+      {{"attributes", {{"POSITION", gltf.floats({0, 0, 0, 1, 0, 0, 0, 1, 0}, "VEC3", 3)}}}});
+  for (const std::size_t unseen : {0, 1, 2}) {
+    const auto loaded = read_scene(folder.write("s.glb", gltf.glb()), {.keep_scene = true}, {});
+    ASSERT_TRUE(loaded.ok()) << loaded.status().message();
+    const ExportOptions options{
+        .target = folder / "w.glb", .charts_only = true, .keep_scene = true};
+    const auto report = export_world(*loaded, options, {}, {});
+    ASSERT_TRUE(report.ok()) << report.status().message();
+    EXPECT_TRUE(report->not_kept.empty());
+    ASSERT_EQ(report->advice.size(), unseen == 0 ? 0u : 1u);
+    const std::string line = unseen == 0 ? "" : report->advice[0];
+    EXPECT_TRUE(line.starts_with(unseen == 0   ? ""
+                                 : unseen == 1 ? "1 mesh stays as before, without"
+                                               : "2 meshes stay as before, without"))
+        << line;
+    gltf.j["meshes"].push_back(gltf.j["meshes"][0]);
+  }
+}
+
 TEST(KeepScene, LinesOfMtlThatWereNotReadAreToldAsNotKept) {
   const TempFolder folder;
   folder.write("s.mtl", "newmtl used\nKd 1 0 0\nNs 30\nKs 1 1 1\nnewmtl unused\nKs 1 1 1\n");

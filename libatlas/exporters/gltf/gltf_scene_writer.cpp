@@ -105,7 +105,7 @@ class MaterialWriter {
   Result<std::size_t> image(std::size_t index) {
     const auto [at, is_new] = images_.try_emplace(index, images_.size());
     if (!is_new) return at->second;
-    auto image = files_.image(index);
+    auto image = files_.image(index, index);
     if (!image.ok()) return image.status();
     document_.json["images"].push_back(std::move(*image));
     return at->second;

@@ -10,6 +10,7 @@
 #include "libatlas/core/file_extension.h"
 #include "libatlas/exporters/gltf_kept/gltf_data.h"
 #include "libatlas/exporters/gltf_kept/gltf_kept_materials.h"
+#include "libatlas/exporters/gltf_kept/gltf_kept_meshes.h"
 #include "libatlas/exporters/gltf_kept/gltf_kept_nodes.h"
 #include "libatlas/exporters/gltf_kept/gltf_kept_rest.h"
 #include "libatlas/exporters/gltf_kept/gltf_kept_unit.h"
@@ -95,6 +96,7 @@ class FileWriter {
     document_.add_info("the new uvs: " + result.uv_set);
     if (left_out_colours_) count_vertex_alpha(scene_, losses_);
     result.not_kept = losses_.lines();
+    result.meshes_without_uvs = meshes_without_uvs_;
     return {};
   }
 
@@ -126,7 +128,7 @@ class FileWriter {
     mesh["primitives"] = json::array();
     for (std::size_t p = 0; p < model_mesh(number).primitives.size(); ++p)
       add_unchanged(number, p, mesh);
-    losses_.add("meshes that are not shown and get no new uvs");
+    if (!mesh["primitives"].empty()) ++meshes_without_uvs_;
     return mesh;
   }
 
@@ -361,6 +363,7 @@ class FileWriter {
   const std::int64_t set_;           // number of the new uv set
   std::set<std::int64_t> own_sets_;  // those that any primitive shown keeps
   bool left_out_colours_ = false;    // COLOR_0 of any primitive
+  std::size_t meshes_without_uvs_ = 0;
 };
 
 }  // namespace

@@ -34,9 +34,6 @@ class KeptMaterials {
   std::optional<std::size_t> material(int number, const std::set<std::int64_t>& sets);
 
  private:
-  std::vector<bool> wanted_images() const;
-  bool name_image(nlohmann::json& texture, const std::vector<std::optional<std::size_t>>& images);
-
   const GltfSource& source_;
   nlohmann::json& document_;
   Losses& losses_;

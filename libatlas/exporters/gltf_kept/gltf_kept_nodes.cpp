@@ -2,37 +2,18 @@
 
 #include <fmt/format.h>
 
-#include <map>
-#include <optional>
 #include <set>
 #include <string>
 #include <utility>
 
 #include "libatlas/exporters/gltf/gltf_document.h"
-#include "libatlas/scene/gltf/gltf_check.h"
+#include "libatlas/exporters/gltf_kept/gltf_kept_meshes.h"
 #include "libatlas/scene/gltf/gltf_instances.h"
 #include "libatlas/scene/scene.h"
 
 namespace atlas {
 using nlohmann::json;
 namespace {
-
-constexpr const char* kPointer = "KHR_animation_pointer";
-
-// Returns the pointer to what a channel of an animation moves, or null if that is no pointer.
-const json* pointer_of(const json& channel) {
-  const auto target = channel.is_object() ? channel.find("target") : channel.end();
-  if (target == channel.end() || !target->is_object()) return nullptr;
-  const json* extension = extension_at(*target, kPointer);
-  if (extension == nullptr || !extension->is_object()) return nullptr;
-  const auto pointer = extension->find("pointer");
-  return pointer != extension->end() && pointer->is_string() ? &*pointer : nullptr;
-}
-
-// Removes the mesh from a node, and its skin and weights, which the format allows only with a mesh.
-void leave_mesh(json& node) {
-  for (const char* key : {"mesh", "skin", "weights"}) node.erase(key);
-}
 
 // Counts what the instances of a node have besides their places: nodes cannot have attributes, and
 // extras would have to be given to each of them.
@@ -86,6 +67,8 @@ class Walk {
     return own;
   }
 
+  const InstanceNodes& instances() const { return instances_; }
+
  private:
   // Gives the node its mesh. If it has instances, returns the new nodes for them.
   json show(std::size_t node, std::size_t visit) {
@@ -111,6 +94,7 @@ class Walk {
       if (const std::string& name = source_.model.nodes[node_of(next_)].name; !name.empty())
         instance["name"] = fmt::format("{}_{}", name, instances.size());
       instances.push_back(nodes_.size());
+      instances_[node_of(next_)].push_back(nodes_.size());
       nodes_.push_back(std::move(instance));
     }
     return instances;
@@ -136,6 +120,7 @@ class Walk {
   json& nodes_;
   Losses& losses_;
   std::vector<bool> visited_;
+  InstanceNodes instances_;
   std::size_t visits_ = 0, next_ = 0;
 };
 
@@ -159,36 +144,6 @@ Roots divide_roots(const GltfSource& source, const json& nodes, const json& root
     (skinned ? result.skinned : result.moved).push_back(root);
   }
   return result;
-}
-
-// Lets animations that name a mesh by its number (KHR_animation_pointer), such as those of its
-// weights, move the copies of the mesh, too.
-void animate_copies(const GltfSource& source, const std::vector<std::size_t>& meshes,
-                    json& document) {
-  std::multimap<std::string, std::size_t> copies;  // by the beginning of pointers to the first
-  for (std::size_t i = 0; i < meshes.size(); ++i) {
-    const auto mesh = static_cast<std::size_t>(source.places[i].mesh);
-    if (meshes[i] != mesh) copies.emplace(fmt::format("/meshes/{}/", mesh), meshes[i]);
-  }
-  const auto animations = document.find("animations");
-  if (copies.empty() || animations == document.end() || !animations->is_array()) return;
-  for (json& animation : *animations) {
-    if (!animation.is_object() || !animation.contains("channels")) continue;
-    json& channels = animation["channels"];
-    for (std::size_t c = 0, count = channels.is_array() ? channels.size() : 0; c < count; ++c) {
-      const json* pointer = pointer_of(channels[c]);
-      if (pointer == nullptr) continue;
-      const auto path = pointer->get<std::string>();
-      const std::size_t length = path.find('/', std::size("/meshes/") - 1) + 1;
-      const auto [begin, end] = copies.equal_range(path.substr(0, length));
-      for (auto at = begin; at != end; ++at) {
-        json channel = channels[c];
-        channel["target"]["extensions"][kPointer]["pointer"] =
-            fmt::format("/meshes/{}/{}", at->second, path.substr(length));
-        channels.push_back(std::move(channel));
-      }
-    }
-  }
 }
 
 // Makes `roots` the root nodes of the scene that readers show.
@@ -240,6 +195,7 @@ void place_kept_meshes(const World& world, const std::vector<std::size_t>& meshe
     nodes.push_back({{"mesh", meshes[i]}});
   }
   animate_copies(source, meshes, document);
+  animate_instances(walk.instances(), document);
   if (world.up != Up::y || world.metres_per_unit != 1) {
     json top = gltf_root(world, {});  // coordinates are the file's own, without an origin
     Roots divided = divide_roots(source, nodes, roots);
@@ -251,27 +207,6 @@ void place_kept_meshes(const World& world, const std::vector<std::size_t>& meshe
     }
   }
   set_roots(source, std::move(roots), document);
-}
-
-void drop_empty_meshes(json& document, Losses& losses) {
-  json meshes = json::array();
-  std::vector<std::optional<std::size_t>> numbers;
-  for (json& mesh : document["meshes"]) {
-    const bool empty = mesh["primitives"].empty();
-    losses.add("meshes of which no primitive is left", empty);
-    numbers.push_back(empty ? std::nullopt : std::optional(meshes.size()));
-    if (!empty) meshes.push_back(std::move(mesh));
-  }
-  document["meshes"] = std::move(meshes);
-  for (json& node : document["nodes"]) {
-    const auto at = node.find("mesh");
-    if (at == node.end() || !at->is_number_integer()) continue;
-    const auto number = at->get<std::size_t>();
-    if (number < numbers.size() && numbers[number])
-      *at = *numbers[number];
-    else
-      leave_mesh(node);
-  }
 }
 
 }  // namespace atlas

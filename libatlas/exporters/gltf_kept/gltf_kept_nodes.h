@@ -22,8 +22,4 @@ std::vector<std::size_t> number_kept_meshes(const GltfSource& source);
 void place_kept_meshes(const World& world, const std::vector<std::size_t>& meshes,
                        nlohmann::json& document, Losses& losses);
 
-// Removes meshes that have lost all of their primitives, because the format forbids them, and
-// removes them from their nodes. The other meshes get new numbers.
-void drop_empty_meshes(nlohmann::json& document, Losses& losses);
-
 }  // namespace atlas

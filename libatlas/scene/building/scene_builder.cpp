@@ -222,8 +222,10 @@ Result<TextureImage> SceneBuilder::load_texture(const RawTexture& raw) const {
   return read_texture(raw.path);
 }
 
-// If the texture is a PNG or JPEG file, appends it to the scene's textures and returns true.
-bool SceneBuilder::keep_encoded(RawTexture& raw, Scene& scene) const {
+// If the texture is a PNG or JPEG file, appends it to the scene's textures and returns true. Files
+// of formats that glTF holds only by extensions are kept beside a glTF source.
+bool SceneBuilder::keep_encoded(std::size_t texture, Scene& scene) {
+  RawTexture& raw = textures[texture];
   std::vector<std::uint8_t> read;
   if (raw.bytes.empty()) {
     const auto file_bytes = read_file_bytes(raw.path);
@@ -231,7 +233,11 @@ bool SceneBuilder::keep_encoded(RawTexture& raw, Scene& scene) const {
     read.assign(file_bytes->begin(), file_bytes->end());
   }
   std::vector<std::uint8_t>& bytes = raw.bytes.empty() ? read : raw.bytes;
-  if (image_extension(bytes).empty()) return false;
+  if (image_extension(bytes).empty()) {
+    if (source && (raw.of_extension || !extension_format(bytes).extension.empty()))
+      image_files[texture] = bytes;
+    return false;
+  }
   scene.textures.push_back({raw.path, {}, std::move(bytes)});
   return true;
 }
@@ -253,19 +259,33 @@ std::vector<std::filesystem::path> SceneBuilder::unread_files() const {
   return unread;
 }
 
+// Returns which of `textures` materials have.
+std::vector<bool> SceneBuilder::textures_of_materials() const {
+  std::vector<bool> used(textures.size());
+  for (const RawMaterial& m : materials)
+    if (m.texture >= 0) used[std::size_t(m.texture)] = true;
+  return used;
+}
+
 void SceneBuilder::load_textures(Scene& scene, bool encoded, const Context& context) {
   std::vector<std::int32_t> loaded(textures.size(), -1);
+  const std::vector<bool> used = textures_of_materials();
+  image_files.resize(textures.size());
   for (std::size_t i = 0; i < textures.size(); ++i) {
     if (context.cancelled()) return;
     context.report("reading", kPlaced + (1 - kPlaced) * double(i) / double(textures.size()));
     RawTexture& raw = textures[i];
     note_file(raw);
-    if (encoded && keep_encoded(raw, scene)) {
+    if (encoded && keep_encoded(i, scene)) {
       loaded[i] = static_cast<std::int32_t>(scene.textures.size()) - 1;
       continue;
     }
+    const bool kept = !image_files[i].empty();
+    if (kept && raw.of_extension && !used[i]) continue;
     auto image = load_texture(raw);
+    if (!image.ok() && kept) continue;
     if (image.ok()) {
+      if (!raw.of_extension) image_files[i].clear();  // PNG holds it without an extension
       loaded[i] = static_cast<std::int32_t>(scene.textures.size());
       if (image->clipped)
         defects.add(DefectKind::texture_clipped, [&] { return raw.path.string(); });

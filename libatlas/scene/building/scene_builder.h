@@ -27,6 +27,9 @@ struct RawTexture {
   std::filesystem::path path;  // of the file, or a name for messages
   std::vector<std::uint8_t> bytes;
   std::string place;  // where the scene's file names it
+  // Whether an extension names it, because its format is none that glTF itself has. A scene that is
+  // kept has its file as it is.
+  bool of_extension = false;
 };
 
 // `texture` is an index into SceneBuilder::textures.
@@ -77,6 +80,7 @@ class SceneBuilder {
   std::vector<RawMaterial> materials;
   std::vector<RawTexture> textures;
   std::vector<std::int32_t> texture_numbers;  // once loaded: of each in Scene::textures, or -1
+  std::vector<std::vector<std::uint8_t>> image_files;  // GltfSource::image_files, of `textures`
   std::vector<std::string> objects;
   DefectReport defects;
   bool wants_textures = true;                     // false: `textures` need not hold any bytes
@@ -216,7 +220,8 @@ class SceneBuilder {
   void note_file(const RawTexture& raw);
   std::vector<std::filesystem::path> unread_files() const;
   void load_textures(Scene& scene, bool encoded, const Context& context);
-  bool keep_encoded(RawTexture& raw, Scene& scene) const;
+  bool keep_encoded(std::size_t texture, Scene& scene);
+  std::vector<bool> textures_of_materials() const;
   Result<TextureImage> load_texture(const RawTexture& raw) const;
 
   bool all_usable_ = true;

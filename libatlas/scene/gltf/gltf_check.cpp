@@ -230,6 +230,30 @@ const json* extension_at(const json& element, const char* name) {
   return at == extensions->end() ? nullptr : &*at;
 }
 
+bool retype_data_images(json& document) {
+  constexpr std::string_view kData = "data:", kEnd = ";base64,",
+                             kDecoded[] = {"image/png", "image/jpeg"};
+  const auto images = document.find("images");
+  bool any = false;
+  for (std::size_t i = 0; images != document.end() && i < images->size(); ++i) {
+    json& image = (*images)[i];
+    const auto found = image.find("uri");
+    if (found == image.end() || !found->is_string()) continue;
+    std::string& uri = found->get_ref<std::string&>();
+    const std::size_t comma = uri.starts_with(kData) ? uri.find(',') : std::string::npos;
+    if (comma == std::string::npos) continue;
+    const std::string_view head = std::string_view(uri).substr(0, comma + 1);
+    if (!head.ends_with(kEnd)) continue;
+    const std::string type(head.substr(kData.size(), head.find(';') - kData.size()));
+    if (is_one_of(kDecoded, type) && head.size() == kData.size() + type.size() + kEnd.size())
+      continue;
+    uri.replace(0, head.size(), "data:application/octet-stream;base64,");
+    if (!type.empty() && !image.contains("mimeType")) image["mimeType"] = type;
+    any = true;
+  }
+  return any;
+}
+
 Status malformed_gltf(const fs::path& path, const std::string& what) {
   return {ErrorCode::bad_input,
           fmt::format("{}: {} (check it with a glTF validator)", path.string(), what)};

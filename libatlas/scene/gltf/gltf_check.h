@@ -43,4 +43,8 @@ struct GltfParts {
 Result<GltfParts> check_gltf(const std::filesystem::path& path, FileBytes& bytes, bool textures,
                              DefectReport& defects);
 
+// Gives images in data URIs of types that tinygltf does not decode, and would take for file names,
+// a type that it does. Their mimeType then is what the URI said. Returns whether there are any.
+bool retype_data_images(nlohmann::json& document);
+
 }  // namespace atlas

@@ -281,7 +281,8 @@ Result<tinygltf::Model> load_gltf(const fs::path& path, const GltfLoading& loadi
   std::vector<GltfDracoPart> draco;
   if (Status s = describe_draco(path, parsed, draco); !s.ok()) return s;
   const bool marked = loading.lightmap && mark_lightmap_values(parsed);
-  const bool changed = !fallbacks.empty() || !draco.empty() || marked;
+  const bool retyped = retype_data_images(parsed);
+  const bool changed = !fallbacks.empty() || !draco.empty() || marked || retyped;
   const std::string text = changed ? parsed.dump() : std::string();
   if (changed) {
     parts->json = text;

@@ -13,12 +13,30 @@ namespace atlas {
 namespace fs = std::filesystem;
 namespace {
 
+// Returns the image that an extension of a texture names, or -1.
+int image_of_extension(const tinygltf::Model& model, const tinygltf::Value& extension) {
+  if (!extension.IsObject() || !extension.Get("source").IsInt()) return -1;
+  const int image = extension.Get("source").GetNumberAsInt();
+  return image >= 0 && std::size_t(image) < model.images.size() ? image : -1;
+}
+
+// Returns which images extensions of textures name.
+std::vector<bool> images_of_extensions(const tinygltf::Model& model) {
+  std::vector<bool> named(model.images.size());
+  for (const tinygltf::Texture& texture : model.textures)
+    for (const auto& [name, extension] : texture.extensions)
+      if (const int i = image_of_extension(model, extension); i >= 0) named[std::size_t(i)] = true;
+  return named;
+}
+
 Status add_images(const tinygltf::Model& model, SceneBuilder& builder) {
   const fs::path folder = fs::path(builder.file).parent_path();
+  const std::vector<bool> of_extensions = images_of_extensions(model);
   for (std::size_t i = 0; i < model.images.size(); ++i) {
     const tinygltf::Image& image = model.images[i];
     RawTexture texture;
     texture.place = fmt::format("{}: image {}", builder.file, i);
+    texture.of_extension = of_extensions[i];
     texture.path = image.uri.empty() ? fs::path(texture.place) : folder / decode_uri(image.uri);
     if (builder.wants_textures) texture.bytes = image.image;
     if (builder.wants_textures && image.bufferView >= 0) {
@@ -42,11 +60,18 @@ int image_of(const tinygltf::Model& model, int texture) {
   const tinygltf::Texture& t = model.textures[texture];
   int source = t.source;
   const auto webp = t.extensions.find("EXT_texture_webp");
-  if (source < 0 && webp != t.extensions.end() && webp->second.IsObject() &&
-      webp->second.Get("source").IsInt()) {
-    source = webp->second.Get("source").GetNumberAsInt();
-  }
+  if (source < 0 && webp != t.extensions.end()) source = image_of_extension(model, webp->second);
   return source >= 0 && std::size_t(source) < model.images.size() ? source : -1;
+}
+
+// Returns whether the scene is kept with an image that an extension of a texture names, whether or
+// not it can be decoded.
+bool keeps_image(const tinygltf::Model& model, int texture, const SceneBuilder& builder) {
+  if (!builder.wants_rest || !builder.wants_textures) return false;
+  if (texture < 0 || std::size_t(texture) >= model.textures.size()) return false;
+  const auto& extensions = model.textures[std::size_t(texture)].extensions;
+  return std::any_of(extensions.begin(), extensions.end(),
+                     [&](const auto& e) { return image_of_extension(model, e.second) >= 0; });
 }
 
 // Returns the names of a texture's extensions, in brackets after a blank, or nothing.
@@ -198,7 +223,8 @@ Status add_gltf_materials(const tinygltf::Model& model, SceneBuilder& builder) {
     add_emission(m, material);
     add_visibility(m, diffuse.opacity, material);
     material.texture = image_of(model, diffuse.texture.index);
-    if (diffuse.texture.index >= 0 && material.texture < 0) {
+    if (diffuse.texture.index >= 0 && material.texture < 0 &&
+        !keeps_image(model, diffuse.texture.index, builder)) {
       builder.defects.add(DefectKind::texture_unreadable, [&] {
         return fmt::format("{}: material '{}': its texture names no image of a kind that is read{}",
                            builder.file, material.name,

@@ -158,9 +158,9 @@ void take_uv_pages(const tinygltf::Asset& asset, UvPages& pages) {
 
 Status read_gltf(const fs::path& path, SceneBuilder& builder, const Context& context) {
   auto source = std::make_shared<GltfSource>();
-  auto model =
-      load_gltf(path, {builder.wants_textures || builder.wants_rest, builder.defects, builder.files,
-                       builder.wants_rest ? &source->document : nullptr, builder.wants_lightmap});
+  auto model = load_gltf(
+      path, {builder.wants_textures && !builder.wants_rest, builder.defects, builder.files,
+             builder.wants_rest ? &source->document : nullptr, builder.wants_lightmap});
   if (!model.ok()) return model.status();
   source->model = std::move(*model);
   if (Status s = builder.wants_rest ? take_data_out(path, *source) : Status(); !s.ok()) return s;

@@ -41,8 +41,12 @@ struct GltfSource {
   // of several parents once at each. Visits count from 0 and include hidden nodes.
   std::vector<GltfPlace> places;
   std::vector<std::int32_t> image_texture;  // index of each image in Scene::textures, or -1
-  bool other_light = false;                 // whether Scene::illumination is from another file
-  std::uint64_t positions_mark = 0;         // positions_mark() of the scene as it was read
+  // The files of images in formats that glTF holds only by extensions (EXT_texture_webp,
+  // KHR_texture_basisu), which are written as they are. Empty: the image is none of these, or there
+  // is none. Empty as a whole, like image_texture, if no texture was asked for.
+  std::vector<std::vector<std::uint8_t>> image_files;
+  bool other_light = false;          // whether Scene::illumination is from another file
+  std::uint64_t positions_mark = 0;  // positions_mark() of the scene as it was read
 };
 
 // Returns a number that tells by 64 bits whether positions and origin of a scene have changed.

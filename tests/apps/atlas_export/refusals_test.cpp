@@ -238,6 +238,34 @@ TEST_F(AtlasExport, AKeptSceneOverwritesNoneOfItsTextures) {
   EXPECT_EQ(slurp(dir_ / "w_texture0.png"), image);
 }
 
+// Nor are images in formats that are not decoded.
+TEST_F(AtlasExport, AKeptGltfOverwritesNoneOfItsImages) {
+  const std::string bytes = "DDS |abc";
+  write("w_texture0.dds", bytes);
+  write("s.gltf", R"({"asset": {"version": "2.0"}, "extensionsUsed": ["MSFT_texture_dds"],
+    "buffers": [{"byteLength": 36, "uri": "data:application/octet-stream;base64,)"
+                  R"(AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAA"}],
+    "bufferViews": [{"buffer": 0, "byteLength": 36}],
+    "accessors": [{"bufferView": 0, "componentType": 5126, "type": "VEC3", "count": 3}],
+    "images": [{"uri": "w_texture0.dds"}],
+    "textures": [{"extensions": {"MSFT_texture_dds": {"source": 0}}}],
+    "meshes": [{"primitives": [{"attributes": {"POSITION": 0}}]}],
+    "nodes": [{"mesh": 0}], "scenes": [{"nodes": [0]}]})");
+  const auto before = files();
+  for (const char* line : {"-o {0}/w.gltf", "-o {0}/v.gltf --report {0}/v_texture0.dds",
+                           "-o {0}/v.gltf --report {0}/w_texture0.dds"}) {
+    const RunResult r = run(fmt::format("{}/s.gltf --keep-scene -q ", dir_.string()) +
+                            fmt::format(fmt::runtime(line), dir_.string()));
+    EXPECT_EQ(r.exit_code, 2) << line;
+    EXPECT_NE(r.output.find("would overwrite"), std::string::npos) << r.output;
+    EXPECT_EQ(files(), before);
+  }
+  EXPECT_EQ(run(fmt::format("{0}/s.gltf -o {0}/v.gltf --keep-scene -q", dir_.string())).exit_code,
+            0);
+  EXPECT_EQ(slurp(dir_ / "v_texture0.dds"), bytes);
+  EXPECT_EQ(slurp(dir_ / "w_texture0.dds"), bytes);
+}
+
 // Textures are not read where no page needs them.
 TEST_F(AtlasExport, OverwritesNoTextureThatItNeedNotRead) {
   const fs::path wood = write("wood.png", "an image"), bump = write("bump.png", "another");
