@@ -33,9 +33,8 @@ struct ReadOptions {
   // reads Scene::vertex_opacity (alpha of PLY's and OFF's vertices and of glTF's COLOR_0). All
   // images of a glTF file are then textures, in the file's order, except those in formats of
   // extensions (EXT_texture_webp) that no base colour needs, or that cannot be decoded: the source
-  // holds their files. Scene::not_read counts what the
-  // arrays lack in any case. An export to glTF refuses a scene with a source whose positions have
-  // been changed, see Scene::source.
+  // holds their files. Scene::not_read counts what the arrays lack in any case. An export to glTF
+  // refuses a scene with a source whose positions have been changed, see Scene::source.
   bool rest = false;
   // Reads the lightmap that a file names as libatlas writes it (glTF in asset.extras.lightmap, OBJ
   // in a comment) into Scene::lightmap: its linear images if all can be read, else those of 8 bits.
