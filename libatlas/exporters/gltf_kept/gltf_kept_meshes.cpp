@@ -44,20 +44,8 @@ void edit_channels(json& document, const std::function<void(json, json&)>& edit)
   *animations = std::move(kept);
 }
 
-// Returns the target of a channel, or null.
-json* target_of(json& channel) {
-  const auto target = channel.is_object() ? channel.find("target") : channel.end();
-  return channel.is_object() && target != channel.end() && target->is_object() ? &*target : nullptr;
-}
-
-// Returns the pointer to what a channel moves, or nothing if that is no pointer.
-std::optional<std::string> pointer_of(json& channel) {
-  const json* target = target_of(channel);
-  const json* extension = target == nullptr ? nullptr : extension_at(*target, kPointer);
-  if (extension == nullptr || !extension->is_object()) return {};
-  const auto pointer = extension->find("pointer");
-  if (pointer == extension->end() || !pointer->is_string()) return {};
-  return pointer->get<std::string>();
+std::optional<std::string> pointer_of_channel(json& channel) {
+  return pointer_of(member_at(&channel, "target"));
 }
 
 // An element of a list that a pointer names, and what follows its number.
@@ -84,8 +72,9 @@ json with_pointer(json channel, std::string_view list, const Place& place) {
 
 // Returns the node whose weights a channel moves without a pointer, or -1.
 std::int64_t weights_of(json& channel) {
-  const json* target = target_of(channel);
-  const bool weights = target != nullptr && target->value("path", json()) == "weights";
+  const json* target = member_at(&channel, "target");
+  const bool weights =
+      target != nullptr && target->is_object() && target->value("path", json()) == "weights";
   return weights ? integer_at(*target, "node", -1) : -1;
 }
 
@@ -135,8 +124,8 @@ std::size_t renumber_extensions(json& part, const Numbers& numbers, bool inside)
 void renumber_channels(json& document, const Numbers& numbers, const std::set<std::int64_t>& bare,
                        Losses& losses) {
   edit_channels(document, [&](json channel, json& to) {
-    auto place = place_in(kMeshes, pointer_of(channel));
-    const auto node = place_in(kNodes, pointer_of(channel));
+    auto place = place_in(kMeshes, pointer_of_channel(channel));
+    const auto node = place_in(kNodes, pointer_of_channel(channel));
     const bool known = place && place->number < numbers.size();
     if ((known && !numbers[place->number]) || bare.contains(weights_of(channel)) ||
         (node && node->rest.starts_with("/weights") && bare.contains(std::int64_t(node->number))))
@@ -150,6 +139,12 @@ void renumber_channels(json& document, const Numbers& numbers, const std::set<st
 }
 
 }  // namespace
+
+std::optional<std::string> pointer_of(json* target) {
+  const json* pointer = member_at(member_at(member_at(target, "extensions"), kPointer), "pointer");
+  if (pointer == nullptr || !pointer->is_string()) return {};
+  return pointer->get<std::string>();
+}
 
 void leave_mesh(json& node) {
   for (const char* key : {"mesh", "skin", "weights"}) node.erase(key);
@@ -165,7 +160,7 @@ void animate_copies(const GltfSource& source, const std::vector<std::size_t>& me
   if (copies.empty()) return;
   edit_channels(document, [&](json channel, json& to) {
     to.push_back(channel);
-    const auto place = place_in(kMeshes, pointer_of(channel));
+    const auto place = place_in(kMeshes, pointer_of_channel(channel));
     if (!place) return;
     const auto [begin, end] = copies.equal_range(place->number);
     for (auto at = begin; at != end; ++at)
@@ -176,7 +171,7 @@ void animate_copies(const GltfSource& source, const std::vector<std::size_t>& me
 void animate_instances(const InstanceNodes& instances, json& document) {
   if (instances.empty()) return;
   edit_channels(document, [&](json channel, json& to) {
-    const auto place = place_in(kNodes, pointer_of(channel));
+    const auto place = place_in(kNodes, pointer_of_channel(channel));
     const bool by_pointer = place && place->rest.starts_with("/weights");
     const std::int64_t node =
         by_pointer ? static_cast<std::int64_t>(place->number) : weights_of(channel);

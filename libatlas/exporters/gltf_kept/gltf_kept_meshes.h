@@ -5,6 +5,8 @@
 #include <cstddef>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
 #include <vector>
 
 #include "libatlas/scene/building/losses.h"
@@ -14,6 +16,9 @@ namespace atlas {
 
 // The nodes that the instances of a node have become.
 using InstanceNodes = std::map<std::size_t, std::vector<std::size_t>>;
+
+// Returns what the target of an animation's channel, or null, names by KHR_animation_pointer.
+std::optional<std::string> pointer_of(nlohmann::json* target);
 
 // Removes the mesh from a node, and its skin and weights, which the format allows only with a mesh.
 void leave_mesh(nlohmann::json& node);

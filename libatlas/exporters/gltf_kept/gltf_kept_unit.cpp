@@ -11,29 +11,25 @@
 #include <utility>
 #include <vector>
 
+#include "libatlas/exporters/gltf_kept/gltf_kept_meshes.h"
+#include "libatlas/scene/gltf/gltf_check.h"
+
 namespace atlas {
 using nlohmann::json;
 namespace {
 
 constexpr const char* kLights = "KHR_lights_punctual";
 
-// Returns the member `key` of a JSON object, or null if there is none.
-json* member(json* of, const char* key) {
-  if (of == nullptr || !of->is_object()) return nullptr;
-  const auto at = of->find(key);
-  return at == of->end() ? nullptr : &*at;
-}
-
 // Calls `visit` with the target of each channel of each animation.
 template <class Visit>
 void for_channels(json& document, const Visit& visit) {
-  json* animations = member(&document, "animations");
+  json* animations = member_at(&document, "animations");
   if (animations == nullptr || !animations->is_array()) return;
   for (json& animation : *animations) {
-    json* channels = member(&animation, "channels");
+    json* channels = member_at(&animation, "channels");
     if (channels == nullptr || !channels->is_array()) continue;
     for (json& channel : *channels)
-      if (json* target = member(&channel, "target")) visit(*target);
+      if (json* target = member_at(&channel, "target")) visit(*target);
   }
 }
 
@@ -45,7 +41,7 @@ void mark(json& document, const json& numbers, std::vector<bool>& marked) {
     const auto n = number.get<std::size_t>();
     if (n >= marked.size() || marked[n]) continue;
     marked[n] = true;
-    if (const json* children = member(&document["nodes"][n], "children"))
+    if (const json* children = member_at(&document["nodes"][n], "children"))
       mark(document, *children, marked);
   }
 }
@@ -57,28 +53,28 @@ std::vector<bool> shown_nodes(json& document) {
 }
 
 json* camera_of(json& node) {
-  return member(&node, "camera");
+  return member_at(&node, "camera");
 }
 
 json* light_of(json& node) {
-  return member(member(member(&node, "extensions"), kLights), "light");
+  return member_at(member_at(member_at(&node, "extensions"), kLights), "light");
 }
 
 void scale_members(json* part, std::initializer_list<const char*> keys, double factor) {
   for (const char* key : keys) {
-    json* value = member(part, key);
+    json* value = member_at(part, key);
     if (value != nullptr && value->is_number()) *value = value->get<double>() * factor;
   }
 }
 
 void scale_camera(json& camera, double scale) {
-  scale_members(member(&camera, "perspective"), {"znear", "zfar"}, scale);
-  scale_members(member(&camera, "orthographic"), {"znear", "zfar", "xmag", "ymag"}, scale);
+  scale_members(member_at(&camera, "perspective"), {"znear", "zfar"}, scale);
+  scale_members(member_at(&camera, "orthographic"), {"znear", "zfar", "xmag", "ymag"}, scale);
 }
 
 void scale_light(json& light, double scale) {
   scale_members(&light, {"range"}, scale);
-  const json* type = member(&light, "type");
+  const json* type = member_at(&light, "type");
   if (type == nullptr || (*type != "point" && *type != "spot")) return;
   if (!light.contains("intensity")) light["intensity"] = 1;  // the default, in candela
   scale_members(&light, {"intensity"}, scale * scale);
@@ -117,7 +113,7 @@ void scale_shown(json& document, json* list, const Reference& reference, const S
 std::set<std::size_t> animated_nodes(json& document) {
   std::set<std::size_t> nodes;
   for_channels(document, [&](json& target) {
-    const json* node = member(&target, "node");
+    const json* node = member_at(&target, "node");
     if (node != nullptr && node->is_number_integer()) nodes.insert(node->get<std::size_t>());
   });
   return nodes;
@@ -205,23 +201,20 @@ bool is_length(json& document, const std::string& pointer) {
   const std::string of_lights = std::string("/extensions/") + kLights + "/lights/";
   if (!pointer.starts_with(of_lights)) return false;
   if (name != "intensity") return name == "range";
-  json* lights = member(member(member(&document, "extensions"), kLights), "lights");
+  json* lights = member_at(member_at(member_at(&document, "extensions"), kLights), "lights");
   std::size_t number = 0;
   std::from_chars(pointer.data() + of_lights.size(), pointer.data() + pointer.size(), number);
   if (lights == nullptr || !lights->is_array() || number >= lights->size()) return false;
-  const json* type = member(&(*lights)[number], "type");
+  const json* type = member_at(&(*lights)[number], "type");
   return type != nullptr && *type != "directional";  // whose unit has no length
 }
 
 // Counts animations of values that are scaled here: their own values stay.
 void count_animations(json& document, Losses& losses) {
   for_channels(document, [&](json& target) {
-    json* extensions = member(&target, "extensions");
-    const json* pointer = member(member(extensions, "KHR_animation_pointer"), "pointer");
-    if (pointer == nullptr || !pointer->is_string()) return;
-    const auto path = pointer->get<std::string>();
+    const auto pointer = pointer_of(&target);
     losses.add("animations of cameras, lights and volumes, in another unit",
-               is_length(document, path));
+               pointer && is_length(document, *pointer));
   });
 }
 
@@ -230,12 +223,12 @@ void count_animations(json& document, Losses& losses) {
 void scale_kept_lengths(double metres_per_unit, json& document, Losses& losses) {
   const auto camera = [&](json& part) { scale_camera(part, metres_per_unit); };
   const auto light = [&](json& part) { scale_light(part, metres_per_unit); };
-  json* lights = member(member(member(&document, "extensions"), kLights), "lights");
-  scale_shown(document, member(&document, "cameras"), camera_of, camera);
+  json* lights = member_at(member_at(member_at(&document, "extensions"), kLights), "lights");
+  scale_shown(document, member_at(&document, "cameras"), camera_of, camera);
   scale_shown(document, lights, light_of, light);
-  if (json* materials = member(&document, "materials"); materials && materials->is_array())
+  if (json* materials = member_at(&document, "materials"); materials && materials->is_array())
     for (json& material : *materials)
-      scale_members(member(member(&material, "extensions"), "KHR_materials_volume"),
+      scale_members(member_at(member_at(&material, "extensions"), "KHR_materials_volume"),
                     {"attenuationDistance"}, metres_per_unit);
   keep_scale_of_cameras(document, metres_per_unit);
   count_animations(document, losses);

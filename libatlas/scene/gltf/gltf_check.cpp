@@ -230,6 +230,12 @@ const json* extension_at(const json& element, const char* name) {
   return at == extensions->end() ? nullptr : &*at;
 }
 
+json* member_at(json* of, const char* key) {
+  if (of == nullptr || !of->is_object()) return nullptr;
+  const auto at = of->find(key);
+  return at == of->end() ? nullptr : &*at;
+}
+
 bool retype_data_images(json& document) {
   constexpr std::string_view kData = "data:", kEnd = ";base64,",
                              kDecoded[] = {"image/png", "image/jpeg"};

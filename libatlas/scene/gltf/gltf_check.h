@@ -43,6 +43,9 @@ struct GltfParts {
 Result<GltfParts> check_gltf(const std::filesystem::path& path, FileBytes& bytes, bool textures,
                              DefectReport& defects);
 
+// Returns the member `key` of a JSON object; null if there is none, or `of` is null or no object.
+nlohmann::json* member_at(nlohmann::json* of, const char* key);
+
 // Gives images in data URIs of types that tinygltf does not decode, and would take for file names,
 // a type that it does. Their mimeType then is what the URI said. Returns whether there are any.
 bool retype_data_images(nlohmann::json& document);

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "libatlas/core/is_finite.h"
+#include "libatlas/scene/gltf/gltf_check.h"
 #include "libatlas/scene/gltf/gltf_pose.h"
 
 namespace atlas {
@@ -32,13 +33,6 @@ std::size_t count_of(const tinygltf::Model& model, int accessor) {
   return exists ? model.accessors[std::size_t(accessor)].count : 0;
 }
 
-// Returns the member of an object; null if there is none, or `part` is no object.
-nlohmann::json* member(nlohmann::json* part, const char* key) {
-  if (part == nullptr || !part->is_object()) return nullptr;
-  const auto at = part->find(key);
-  return at == part->end() ? nullptr : &*at;
-}
-
 bool mark(nlohmann::json* value) {
   if (value == nullptr) return false;
   using Int = std::numeric_limits<int>;
@@ -53,17 +47,20 @@ bool mark(nlohmann::json* value) {
 }  // namespace
 
 bool mark_lightmap_values(nlohmann::json& document) {
-  nlohmann::json* const map = member(member(member(&document, "asset"), "extras"), "lightmap");
+  nlohmann::json* const map =
+      member_at(member_at(member_at(&document, "asset"), "extras"), "lightmap");
   bool any = false;
-  for (const char* key : {"texCoord", "white"}) any |= mark(member(map, key));
+  for (const char* key : {"texCoord", "white"}) any |= mark(member_at(map, key));
   for (const char* key : {"images", "linear"})
-    if (nlohmann::json* names = member(map, key); names != nullptr && names->is_array())
+    if (nlohmann::json* names = member_at(map, key); names != nullptr && names->is_array())
       for (nlohmann::json& name : *names) any |= mark(&name);
-  nlohmann::json* const meshes = map == nullptr ? nullptr : member(&document, "meshes");
+  nlohmann::json* const meshes = map == nullptr ? nullptr : member_at(&document, "meshes");
   if (meshes == nullptr || !meshes->is_array()) return any;
   for (nlohmann::json& mesh : *meshes)
-    if (nlohmann::json* parts = member(&mesh, "primitives"); parts != nullptr && parts->is_array())
-      for (nlohmann::json& part : *parts) any |= mark(member(member(&part, "extras"), "lightmap"));
+    if (nlohmann::json* parts = member_at(&mesh, "primitives");
+        parts != nullptr && parts->is_array())
+      for (nlohmann::json& part : *parts)
+        any |= mark(member_at(member_at(&part, "extras"), "lightmap"));
   return any;
 }
 
