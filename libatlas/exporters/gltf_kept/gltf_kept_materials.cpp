@@ -1,6 +1,5 @@
 #include "libatlas/exporters/gltf_kept/gltf_kept_materials.h"
 
-#include <algorithm>
 #include <functional>
 
 #include "libatlas/exporters/gltf_kept/gltf_kept_images.h"
