@@ -61,6 +61,9 @@ constexpr Names kNames[] = {
      "than falls on it)"},
     {"texture_option_ignored", "texture options ignored"},
     {"node_hidden", "hidden nodes left out"},
+    {"node_shared",
+     "nodes of several parents, which glTF does not allow, shown at each; animations move one of "
+     "them (give each parent a node of its own)"},
     {"skin_repeated",
      "nodes and instances of skinned meshes that lie upon another one, since joints place them "
      "wherever their node is (give each a skin with joints of its own)"},

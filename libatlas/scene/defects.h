@@ -44,6 +44,7 @@ enum class DefectKind : std::uint8_t {
   texture_clipped,         // image of linear values with some beyond 0 to 1: these are clipped
   texture_option_ignored,  // a texture option that has no counterpart here
   node_hidden,             // node that its file hides: left out
+  node_shared,             // glTF node of several parents, which glTF forbids: shown at each
   skin_repeated,           // node or instance whose joints put its mesh where another one is: kept
   text_not_utf8,           // byte of a glTF file's JSON that is not UTF-8: replaced by '?'
   element_ignored,         // lines, points, curves, unknown keywords: nothing to bake

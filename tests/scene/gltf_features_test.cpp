@@ -293,6 +293,9 @@ TEST(Gltf, NodesOfSeveralParents) {
   ASSERT_EQ(loaded->scene.positions.size(), 8u);
   EXPECT_EQ(loaded->scene.positions[2], (Vec3f{1, 1, 1}));
   EXPECT_EQ(loaded->scene.positions[6], (Vec3f{2, 2, 0}));
+  ASSERT_EQ(loaded->defects.count(DefectKind::node_shared), 1u);
+  EXPECT_EQ(loaded->defects.defects[0].first_places[0],
+            (folder / "scene.glb").string() + ": node 0");
   // In a ladder of 60 nodes, each with the next one twice as its child, the last is reached 2^60
   // times.
   for (int i = 3; i < 63; ++i) g.j["nodes"].push_back({{"children", {i + 1, i + 1}}});

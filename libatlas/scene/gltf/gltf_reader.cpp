@@ -39,6 +39,7 @@ class GltfParser {
     const std::vector<int> shown = gltf_roots(model_);
     if (gltf_shown_size(model_, shown) > kMaxShown) return too_much();
     if (builder_.source) builder_.source->roots = shown;
+    count_shared_nodes();
     for (const int node : shown) {
       if (Status s = add_node(node, {}, 0); !s.ok()) return s;
     }
@@ -74,6 +75,16 @@ class GltfParser {
                         builder_.file, why)};
   }
 
+  // A node should have one parent. One with several is shown at each, as in most programs.
+  void count_shared_nodes() {
+    std::vector<std::size_t> parents(model_.nodes.size());
+    for (const tinygltf::Node& node : model_.nodes)
+      for (const int child : node.children)
+        if (child >= 0 && std::size_t(child) < parents.size() && ++parents[std::size_t(child)] == 2)
+          builder_.defects.add(DefectKind::node_shared,
+                               [&] { return fmt::format("{}: node {}", builder_.file, child); });
+  }
+
   // What a node inherits from the nodes above it.
   struct Above {
     glm::dmat4 matrix{1};
@@ -85,7 +96,6 @@ class GltfParser {
     if (index < 0 || std::size_t(index) >= model_.nodes.size()) {
       return gltf_malformed(builder_.file, where, "does not exist");
     }
-    // A node should have one parent. One with several is shown at each, as in most programs.
     if (on_path_[index] || depth > kMostNodeDepth || ++visits_ > kMaxVisits) {
       return gltf_malformed(builder_.file, where, "the nodes form no tree");
     }
