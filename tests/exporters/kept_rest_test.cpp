@@ -340,56 +340,5 @@ TEST(KeptRest, LightOfAnotherFileIsWritten) {
   EXPECT_EQ(triangles[0].attributes.at("COLOR_0")[3], 1);
 }
 
-// A lightmap of an earlier export stays unless its uvs are replaced, whichever program has written
-// the file since. Where it stays, its images must lie beside the new file.
-TEST(KeptRest, EarlierLightmapsStayWithTheirUvs) {
-  const json images = {"a.png", "b%20c.png", "gone.png"};
-  const struct {
-    const char* generator;
-    json map;
-    bool stays;
-  } cases[] = {{"libatlas", {{"images", images}, {"texCoord", 0}}, true},
-               {"other", {{"images", images}, {"texCoord", 0}}, true},
-               {"libatlas", {{"images", images}, {"texCoord", 1}}, false},
-               {"other", {{"images", images}, {"texCoord", 1}}, false},
-               {"libatlas", {{"images", images}, {"texCoord", "0"}}, false},
-               {"other", {{"images", images}, {"texCoord", "0"}}, true},
-               {"libatlas", {{"images", images}, {"texCoord", nullptr}}, false},
-               {"libatlas", "text", false},
-               {"other", "text", true}};
-  for (const auto& c : cases) {
-    const TempFolder folder;
-    Gltf gltf = textured(folder);
-    gltf.j["asset"]["generator"] = c.generator;
-    gltf.j["asset"]["extras"]["lightmap"] = c.map;
-    gltf.j["meshes"][0]["primitives"][0]["extras"]["lightmap"] = 3;
-    const auto loaded = read_scene(folder.write("s.glb", gltf.glb()), kGltfRest, {});
-    ASSERT_TRUE(loaded.ok()) << loaded.status().message();
-    for (const char* there : {"a.png", "b c.png"}) folder.write(there, "");
-    World world = world_of(loaded->scene);
-    world.uv_set = 1;
-    const Result<WorldFile> written = write_kept(world, folder / "w.glb");
-    ASSERT_TRUE(written.ok()) << written.status().message();
-    Lines lines;
-    if (c.stays && c.map.is_object())
-      lines.push_back(
-          "1 x images of the lightmap, which are not beside the file (copy them there)");
-    EXPECT_EQ(written->not_kept, lines) << c.map;
-    const json after = GltfOracle(folder / "w.glb").document;
-    const json extras = after["asset"]["extras"];
-    EXPECT_EQ(extras.contains("lightmap"), c.stays) << c.map;
-    if (c.stays) {
-      EXPECT_EQ(extras["lightmap"], c.map);
-    }
-
-    // The page of an earlier one would be taken for one of the world's own.
-    world.lightmap = Lightmap{{"a.png"}, {}, 1, {}};
-    ASSERT_TRUE(write_kept(world, folder / "w.glb").ok());
-    const json own = GltfOracle(folder / "w.glb").document;
-    EXPECT_EQ(own["asset"]["extras"]["lightmap"]["images"], json({"a.png"}));
-    EXPECT_FALSE(own["meshes"][0]["primitives"][0].contains("extras")) << c.map;
-  }
-}
-
 }  // namespace
 }  // namespace atlas::test

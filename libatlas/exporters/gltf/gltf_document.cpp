@@ -72,7 +72,10 @@ void GltfDocument::name_lightmap(const World& world, std::int64_t uv_set) {
 }
 
 void name_lightmap_page(const World& world, std::uint32_t page, nlohmann::json& primitive) {
-  if (!world.lightmap || world.lightmap->triangle_page.empty()) return;
+  if (world.lightmap && !world.lightmap->triangle_page.empty()) set_lightmap_page(page, primitive);
+}
+
+void set_lightmap_page(std::int64_t page, nlohmann::json& primitive) {
   nlohmann::json& extras = primitive["extras"];
   if (!extras.is_null() && !extras.is_object()) extras = {{"source", std::move(extras)}};
   extras["lightmap"] = page;

@@ -21,6 +21,9 @@ namespace atlas {
 // extras.lightmap, if there are several.
 void name_lightmap_page(const World& world, std::uint32_t page, nlohmann::json& primitive);
 
+// Makes a number the extras.lightmap of a primitive. -1: it lies on no page.
+void set_lightmap_page(std::int64_t page, nlohmann::json& primitive);
+
 class GltfDocument {
  public:
   // The document begins with the world's title and information. `binary`: whether it becomes a

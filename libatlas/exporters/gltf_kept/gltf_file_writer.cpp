@@ -35,15 +35,20 @@ std::set<std::int64_t> sets_of(const std::map<std::string, int>& attributes) {
   return sets;
 }
 
-// Returns the first uv set after TEXCOORD_0 that no primitive shown has. It is the same for the
-// whole file, because engines select it by its number.
-std::int64_t free_set(const GltfSource& source) {
-  std::set<std::int64_t> taken;
+// Returns the uv sets that any primitive shown has.
+std::set<std::int64_t> shown_sets(const GltfSource& source) {
+  std::set<std::int64_t> sets;
   for (const GltfPlace& place : source.places)
     for (const GltfShownPrimitive& shown : place.primitives)
-      taken.merge(sets_of(source.model.meshes[std::size_t(place.mesh)]
-                              .primitives[std::size_t(shown.primitive)]
-                              .attributes));
+      sets.merge(sets_of(source.model.meshes[std::size_t(place.mesh)]
+                             .primitives[std::size_t(shown.primitive)]
+                             .attributes));
+  return sets;
+}
+
+// Returns the first uv set after TEXCOORD_0 that no primitive shown has. It is the same for the
+// whole file, because engines select it by its number.
+std::int64_t free_set(const std::set<std::int64_t>& taken) {
   std::int64_t free = 1;
   while (taken.contains(free)) ++free;
   return free;
@@ -63,7 +68,9 @@ class FileWriter {
         document_(document),
         data_(source_, document),
         materials_(source_, document.json, losses_),
-        set_(world.uv_set > 0 ? world.uv_set : free_set(source_)) {
+        had_sets_(shown_sets(source_)),
+        set_(world.uv_set > 0 ? world.uv_set : free_set(had_sets_)),
+        map_set_(lightmap_set(source_.document)) {
     json asset = std::move(document_.json["asset"]);
     document_.json = source_.document;
     for (const char* list : {"accessors", "bufferViews"}) document_.json.erase(list);
@@ -258,7 +265,6 @@ class FileWriter {
     json primitive = primitive_json(mesh, number);
     for (const char* key : {"mode", "attributes", "indices", "targets", "material"})
       primitive.erase(key);
-    if (replaces_lightmap(source_.document, world_, set_)) drop_lightmap_page(primitive);
     const std::string light = light_on_map(from);
     const auto kept = [&light](std::map<std::string, int> attributes) {
       attributes.erase(light);
@@ -274,6 +280,7 @@ class FileWriter {
     if (const auto material = materials_.material(from.material, usable))
       primitive["material"] = *material;
     add_uvs(keys, sets, primitive["attributes"]);
+    keep_lightmap_page(sets, primitive);
     add_light(shown, vertices, primitive["attributes"]);
     drop_data_extensions(primitive, losses_);
     return primitive;
@@ -342,6 +349,15 @@ class FileWriter {
       if (!own.contains(set)) to[texcoord_name(set)] = uvs;
   }
 
+  // Keeps the page that the primitive has on an earlier export's lightmap, as long as there is one.
+  // If the primitive is on none, because it lacked that set, the new uvs are there now and would be
+  // taken for a place on a page.
+  void keep_lightmap_page(const std::set<std::int64_t>& own, json& primitive) const {
+    if (world_.lightmap || map_set_ == set_) return drop_lightmap_page(primitive);
+    const bool filled = map_set_ >= 0 && map_set_ < set_ && !own.contains(map_set_);
+    if (filled && had_sets_.contains(map_set_)) set_lightmap_page(-1, primitive);
+  }
+
   // Adds light that came from another file, beside the primitive's own attributes.
   void add_light(const GltfShownPrimitive& shown, const std::vector<std::uint32_t>& vertices,
                  json& to) {
@@ -360,9 +376,11 @@ class FileWriter {
   Losses losses_;
   GltfData data_;
   KeptMaterials materials_;
-  const std::int64_t set_;           // number of the new uv set
-  std::set<std::int64_t> own_sets_;  // those that any primitive shown keeps
-  bool left_out_colours_ = false;    // COLOR_0 of any primitive
+  const std::set<std::int64_t> had_sets_;  // uv sets that any primitive shown has in the source
+  const std::int64_t set_;                 // number of the new uv set
+  const std::int64_t map_set_;             // that of an earlier export's lightmap, or -1
+  std::set<std::int64_t> own_sets_;        // those that any primitive shown keeps
+  bool left_out_colours_ = false;          // COLOR_0 of any primitive
   std::size_t meshes_without_uvs_ = 0;
 };
 

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "libatlas/scene/building/lightmap_images.h"
+#include "libatlas/scene/gltf/gltf_check.h"
 #include "libatlas/scene/gltf/gltf_instances.h"
 #include "libatlas/scene/uv_page.h"
 
@@ -150,9 +151,9 @@ void keep_instances(GltfData& data, json& node, Losses& losses) {
   losses.add("instances of nodes whose data cannot be read");
 }
 
-// Returns a member of an object; null if there is none, or `part` is no object.
-json member(const json& part, const char* key) {
-  return part.is_object() ? part.value(key, json()) : json();
+// Returns what an asset says of an earlier export's lightmap, or null.
+const json* lightmap_of(const json* asset) {
+  return member_at(member_at(asset, "extras"), "lightmap");
 }
 
 // Returns the lines of a source that are still true. Pages of its uvs name their set, because they
@@ -186,9 +187,9 @@ json merge_assets(const json& source, const json& own, const std::set<std::int64
   // An earlier lightmap whose uvs are replaced is none any more. Others than ours keep what is none
   // of ours.
   if (const auto map = extras.find("lightmap"); map != extras.end()) {
-    const json set = member(*map, "texCoord");
-    const bool named = set.is_number_integer();
-    if (named ? new_sets.contains(set.get<std::int64_t>()) : ours) extras.erase(map);
+    const json* set = member_at(&*map, "texCoord");
+    const bool named = set != nullptr && set->is_number_integer();
+    if (named ? new_sets.contains(set->get<std::int64_t>()) : ours) extras.erase(map);
   }
   if (added.contains("lightmap")) extras["lightmap"] = added["lightmap"];
   merged["version"] = own["version"];
@@ -197,17 +198,19 @@ json merge_assets(const json& source, const json& own, const std::set<std::int64
 }
 
 void count_absent_images(const json& asset, const std::filesystem::path& file, Losses& losses) {
-  const json map = member(member(asset, "extras"), "lightmap");
   std::error_code error;  // a file that cannot be examined is not there
-  for (const char* list : {"images", "linear"})
-    for (const json& name : member(map, list))
+  for (const char* list : {"images", "linear"}) {
+    const json* names = member_at(lightmap_of(&asset), list);
+    if (names == nullptr) continue;
+    for (const json& name : *names)
       if (name.is_string() && !std::filesystem::exists(lightmap_path(name, file), error))
         losses.add("images of the lightmap, which are not beside the file (copy them there)");
+  }
 }
 
-bool replaces_lightmap(const json& source, const World& world, std::int64_t uv_set) {
-  const json map = member(member(member(source, "asset"), "extras"), "lightmap");
-  return world.lightmap || member(map, "texCoord") == json(uv_set);
+std::int64_t lightmap_set(const json& source) {
+  const json* map = lightmap_of(member_at(&source, "asset"));
+  return map == nullptr ? -1 : integer_at(*map, "texCoord", -1);
 }
 
 void drop_lightmap_page(json& primitive) {

@@ -23,9 +23,8 @@ nlohmann::json merge_assets(const nlohmann::json& source, const nlohmann::json& 
 void count_absent_images(const nlohmann::json& asset, const std::filesystem::path& file,
                          Losses& losses);
 
-// Returns whether the lightmap that an earlier export has named in the source is none any more: the
-// world has one of its own, or uvs in that set.
-bool replaces_lightmap(const nlohmann::json& source, const World& world, std::int64_t uv_set);
+// Returns the uv set of the lightmap that an earlier export has named in the source, or -1.
+std::int64_t lightmap_set(const nlohmann::json& source);
 
 // Removes the page of such a lightmap from a primitive (see name_lightmap_page()).
 void drop_lightmap_page(nlohmann::json& primitive);

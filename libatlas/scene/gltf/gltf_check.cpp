@@ -224,16 +224,7 @@ std::size_t length_at(const json& object, const char* key) {
 }
 
 const json* extension_at(const json& element, const char* name) {
-  const auto extensions = element.find("extensions");
-  if (extensions == element.end() || !extensions->is_object()) return nullptr;
-  const auto at = extensions->find(name);
-  return at == extensions->end() ? nullptr : &*at;
-}
-
-json* member_at(json* of, const char* key) {
-  if (of == nullptr || !of->is_object()) return nullptr;
-  const auto at = of->find(key);
-  return at == of->end() ? nullptr : &*at;
+  return member_at(member_at(&element, "extensions"), name);
 }
 
 bool retype_data_images(json& document) {

@@ -44,7 +44,12 @@ Result<GltfParts> check_gltf(const std::filesystem::path& path, FileBytes& bytes
                              DefectReport& defects);
 
 // Returns the member `key` of a JSON object; null if there is none, or `of` is null or no object.
-nlohmann::json* member_at(nlohmann::json* of, const char* key);
+template <class Json>  // json or const json
+Json* member_at(Json* of, const char* key) {
+  if (of == nullptr || !of->is_object()) return nullptr;
+  const auto at = of->find(key);
+  return at == of->end() ? nullptr : &*at;
+}
 
 // Gives images in data URIs of types that tinygltf does not decode, and would take for file names,
 // a type that it does. Their mimeType then is what the URI said. Returns whether there are any.
