@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "libatlas/scene/check_scene.h"
@@ -139,6 +140,9 @@ TEST(KeptImages, MayBeBaseColours) {
   const TempFolder folder;
   for (const Format& format : kFormats) {
     Gltf gltf = with_image(folder, format, Where::file);
+    const auto emissive = read_scene(write_input(folder, gltf), kGltfRest, {});
+    ASSERT_TRUE(emissive.ok()) << emissive.status().message();
+    EXPECT_EQ(emissive->scene.textures.size(), 1u);  // no other one is decoded
     gltf.j["materials"][0].erase("emissiveTexture");
     gltf.j["materials"][0]["pbrMetallicRoughness"]["baseColorTexture"]["index"] = 1;
     const auto loaded = read_scene(write_input(folder, gltf), kGltfRest, {});
@@ -223,8 +227,12 @@ TEST(KeptImages, WithoutAnExtensionBecomePngIfTheyCan) {
       gltf.j.erase("extensionsUsed");
       gltf.j.erase("extensionsRequired");
       const bool known = format.mime_type != std::string("image/jxr");
-      const WorldFile written = keep(write_input(folder, gltf), folder / "w.gltf");
+      const auto input = write_input(folder, gltf);
+      const WorldFile written = keep(input, folder / "w.gltf");
       EXPECT_EQ(written.not_kept, known ? Lines{} : Lines{kNoImage});
+      const auto loaded = read_scene(input, kGltfRest, {});
+      ASSERT_TRUE(loaded.ok()) << loaded.status().message();
+      EXPECT_EQ(loaded->defects.count(DefectKind::texture_unreadable), known ? 0u : 1u);
       if (!known) continue;
       const GltfOracle after(folder / "w.gltf");
       EXPECT_EQ(after.document["textures"][1], (json{{"source", 1}}));
@@ -236,18 +244,20 @@ TEST(KeptImages, WithoutAnExtensionBecomePngIfTheyCan) {
   }
 }
 
-// Images of one name lie in different folders, and one may be called as another one becomes.
+// Images of one name lie in different folders, and one may be called as another one becomes. Their
+// numbers are those of the file that was read, of which one is absent.
 TEST(KeptImages, BesideAFileHaveNamesOfTheirOwn) {
   const TempFolder folder;
   Gltf gltf = textured(folder);
-  gltf.j["images"].clear(), gltf.j["textures"].clear();
+  gltf.j["images"] = {{{"uri", "gone.png"}}};
+  gltf.j["textures"].clear();
   std::vector<std::string> bytes;
-  for (const std::string name : {"in/a.webp", "a.webp", "in/b.png", "in/w_texture0.webp"}) {
+  for (const std::string name : {"in/a.webp", "a.webp", "in/b.png", "in/w_texture1.webp"}) {
     std::filesystem::create_directories(folder / "in");
     bytes.push_back(name.ends_with("png") ? png_bytes(folder, 5) : kWebp + name);
     folder.write(name, bytes.back());
     gltf.j["images"].push_back({{"uri", "../" + name}});
-    const std::size_t i = bytes.size() - 1;
+    const std::size_t i = bytes.size();
     gltf.j["textures"].push_back({{"extensions", {{"EXT_texture_webp", {{"source", i}}}}}});
   }
   const auto input = write_input(folder, gltf);
@@ -263,6 +273,27 @@ TEST(KeptImages, BesideAFileHaveNamesOfTheirOwn) {
     EXPECT_EQ(after.document["images"][i]["uri"], paths[i].filename().string());
   }
   for (const std::size_t i : {0, 1, 3}) EXPECT_EQ(paths[i].extension(), ".webp");
+}
+
+// A file of a format that is not known keeps the ending of its name if that is a plain one, and is
+// called neither PNG nor JPEG.
+TEST(KeptImages, OfUnknownFormatsKeepTheEndingOfTheirName) {
+  const std::pair<const char*, const char*> cases[] = {
+      {"a.jxr", ".jxr"},    {"a.JXR", ".jxr"},     {"a.%6Axr", ".jxr"}, {"a.png", ".bin"},
+      {"a.jpg", ".bin"},    {"a", ".bin"},         {"a.", ".bin"},      {"a.j-r", ".bin"},
+      {"a.sixsix", ".bin"}, {"a.fives", ".fives"}, {"a.gltf", ".bin"}};
+  const Format& jxr = kFormats[5];
+  for (const auto& [uri, ending] : cases) {
+    const TempFolder folder;
+    Gltf gltf = with_image(folder, jxr, Where::view);
+    gltf.j["images"][1] = {{"uri", uri}, {"mimeType", jxr.mime_type}};
+    const auto input = write_input(folder, gltf);
+    folder.write(std::string("in/") + (uri == cases[2].first ? "a.jxr" : uri), jxr.bytes);
+    EXPECT_EQ(keep(input, folder / "w.gltf").not_kept, Lines{});
+    const GltfOracle after(folder / "w.gltf");
+    EXPECT_EQ(after.document["images"][1]["uri"], std::string("w_texture1") + ending) << uri;
+    EXPECT_EQ(after.image(1), jxr.bytes) << uri;
+  }
 }
 
 // Lights refer to images as textures do.

@@ -36,7 +36,7 @@ std::optional<std::size_t> texture_of(const GltfSource& source, std::size_t imag
 std::string extension_of(const tinygltf::Image& image) {
   constexpr std::size_t kLongest = 6;
   constexpr const char* kOther = ".bin";
-  if (image.uri.empty() || image.uri.starts_with("data:")) return kOther;
+  if (image.uri.empty()) return kOther;
   const std::string own = lower_extension(decode_uri(image.uri));
   const bool plain =
       own.size() > 1 && own.size() <= kLongest &&
