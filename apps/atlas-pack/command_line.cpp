@@ -187,8 +187,7 @@ CLI::App* add_images(CLI::App& app, PackCommand& c) {
 }
 
 void add_mesh(CLI::App& app, PackCommand& c) {
-  CLI::App* mesh =
-      app.add_subcommand("mesh", "The uv charts of a mesh, repacked at uniform density");
+  CLI::App* mesh = app.add_subcommand("mesh", "The uv charts of a mesh, repacked");
   mesh->add_option("mesh", c.input, "OBJ, PLY, OFF or glTF with uvs")->required();
   mesh->add_option("-o,--output", c.output, "OBJ with new uvs, one material a page")->required();
   mesh->add_option("--page", c.page_side, "Side of the largest page, texels")
@@ -201,6 +200,9 @@ void add_mesh(CLI::App& app, PackCommand& c) {
                    "Width / height of the page that the mesh's uvs were made for; without it, what "
                    "the file says if libatlas wrote it, else 1")
       ->check(positive());
+  mesh->add_flag("--keep-density", c.keep_density,
+                 "Keep the sizes that the charts have relative to each other; else all get the "
+                 "same texel density on the surface");
   mesh->add_option("--rotations", c.rotations,
                    "Directions tried: 1, 2, 4, 8, 12, ... 64; above 4 charts may be turned by any "
                    "angle")

@@ -26,6 +26,7 @@ struct PackCommand {
   // mesh
   unsigned pages = 1, rotations = 16;
   int page_side = 2048;
+  bool keep_density = false;
   std::optional<double> uv_aspect;  // nothing: what the mesh's file says of it
 };
 

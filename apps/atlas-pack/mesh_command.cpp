@@ -290,7 +290,8 @@ Result<PackedAtlas> run_mesh(const PackCommand& c, const Context& context) {
         ErrorCode::bad_input,
         fmt::format("{}: has no uvs (atlas-export --charts-only makes some)", c.input.string()));
   UvCharts charts = find_charts(scene);
-  make_uniform(scene, double(c.page_side) * c.page_side * c.pages, charts);
+  scale_charts(scene, c.keep_density ? ChartSizes::given_uvs : ChartSizes::surface,
+               double(c.page_side) * c.page_side * c.pages, charts);
   if (Status s = check_corners(c, charts, context); !s.ok()) return s;
   if (any_angle(c)) turn_upright(scene, charts, context);
   if (charts.without_uv > 0)

@@ -119,27 +119,31 @@ UvCharts find_charts(const Scene& s) {
   return charts;
 }
 
-void make_uniform(const Scene& s, double page_area, UvCharts& charts) {
+void scale_charts(const Scene& s, ChartSizes sizes, double page_area, UvCharts& charts) {
+  std::vector<double> factors;  // at which areas are the wanted ones, in any unit
   double total = 0;
-  for (const auto& members : charts.members)
-    for (std::uint32_t t : members) total += triangle_area(s, t);
-  const double texels = total > 0 ? std::sqrt(page_area / total) : 0;
   for (const auto& members : charts.members) {
     std::vector<Vec2d> corners;
-    double flat = 0, real = 0;
+    double flat = 0, surface = 0;
     for (std::uint32_t t : members) {
-      real += triangle_area(s, t);
+      surface += triangle_area(s, t);
       for (std::size_t k = 3 * std::size_t(t); k < 3 * std::size_t(t) + 3; ++k) {
         const Vec2f uv = s.texcoords[s.texcoord_indices[k]];
         corners.push_back({uv.x, uv.y});
       }
       flat += area_of(&corners[corners.size() - 3]);
     }
-    const double factor = flat > 0 ? texels * std::sqrt(real / flat) : 0;
-    charts.without_area += factor == 0;
-    const Vec2d base = corners.front();
-    for (Vec2d& p : corners) p = {(p.x - base.x) * factor, (p.y - base.y) * factor};
+    const double wanted = sizes == ChartSizes::surface ? surface : flat;
+    total += wanted;
+    factors.push_back(flat > 0 ? std::sqrt(wanted / flat) : 0);
     charts.corners.push_back(std::move(corners));
+  }
+  const double texels = total > 0 ? std::sqrt(page_area / total) : 0;
+  for (std::size_t c = 0; c < charts.corners.size(); ++c) {
+    const double factor = texels * factors[c];
+    charts.without_area += factor == 0;
+    const Vec2d base = charts.corners[c].front();
+    for (Vec2d& p : charts.corners[c]) p = {(p.x - base.x) * factor, (p.y - base.y) * factor};
   }
 }
 

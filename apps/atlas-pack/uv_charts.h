@@ -26,9 +26,12 @@ struct UvCharts {
 // Finds the charts: fills all members except `corners` and `without_area`.
 UvCharts find_charts(const Scene& scene);
 
-// Scales every chart so that its area is proportional to that of its surface, and all charts
-// together have the area `page_area`, in texels. Fills `corners` and `without_area`.
-void make_uniform(const Scene& scene, double page_area, UvCharts& charts);
+// What the areas of the charts are proportional to.
+enum class ChartSizes { surface, given_uvs };
+
+// Scales the charts so that they have these sizes, and all together the area `page_area`, in
+// texels. Fills `corners` and `without_area`.
+void scale_charts(const Scene& scene, ChartSizes sizes, double page_area, UvCharts& charts);
 
 // Turns the corners of every chart into its smallest box, or along its straight borders
 // (param/orient.h), as charts that libatlas makes lie. Packing takes charts as they lie first, and

@@ -138,6 +138,7 @@ Result<UnwrappedMesh> unwrap_mesh(const MeshView& mesh, const UnwrapOptions& opt
   result.utilization = layout.uv_utilization;
   result.texels_per_unit = result.placements[0].texels_per_unit.x;
   result.gaps = laid->left;
+  result.gaps.charts = laid->opened;
   const PlacedCharts placed{result.charts, result.placements, result.pages};
   const ChartedMesh charted(mesh.indices, result.charts);
   std::vector<Vec2f> rounded;

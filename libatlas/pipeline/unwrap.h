@@ -30,9 +30,10 @@ struct UnwrapOptions {
   std::int32_t alignment = 1;
   bool allow_rotation = true;  // turn charts to pack better; else they lie as their uvs do
   PackPreset packing = PackPreset::standard;
-  // Texels per unit of length, the same for all charts; 0 for as many as the pages hold. If the
-  // pages hold less, all charts get less, see UnwrappedMesh::texels_per_unit. A single page that is
-  // not square is made as full as possible, instead of making its charts as large as possible.
+  // Texels per unit of length, the same for all charts, times MeshView::density where that is
+  // given; 0 for as many as the pages hold. If the pages hold less, all charts get less, see
+  // UnwrappedMesh::texels_per_unit. A single page that is not square is made as full as possible,
+  // instead of making its charts as large as possible.
   double texels_per_unit = 0;
   // Page sides are equal and powers of two (page_size must be one). Otherwise a single page has the
   // shape that packs best, and textures for it must have the same shape; several pages have sides
@@ -53,7 +54,7 @@ struct UnwrappedMesh {
   std::vector<std::uint32_t> indices = {};
   std::vector<std::uint32_t> triangle_page = {};  // one per triangle, into pages
   std::vector<Extent> pages = {};                 // texels
-  double texels_per_unit = 0;                     // the density that was reached
+  double texels_per_unit = 0;                     // that were reached, where MeshView::density is 1
   double utilization = 0;                         // area of the charts / area of the pages
   std::uint64_t thin_triangles = 0;  // slivers that rounding to floats closes or turns over
   // How many texels have centres that more than one triangle covers once corners are rounded to
@@ -61,8 +62,10 @@ struct UnwrappedMesh {
   // where mip levels leave no spare padding within which charts could be moved by fractions of a
   // texel.
   std::uint64_t texels_drawn_twice = 0;
-  GapReport gaps = {};   // in texels: what part_gaps left; zeros without part_gaps
-  ChartSet charts = {};  // with what was measured on them: distortion, seams
+  // The charts that part_gaps changed, and the border in texels that is still too near on the
+  // finished pages (near_after; near_before is the same). Zeros without part_gaps.
+  GapReport gaps = {};
+  ChartSet charts = {};                         // with what was measured on them: distortion, seams
   std::vector<ChartPlacement> placements = {};  // one per chart
 };
 

@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <limits>
+#include <span>
 #include <vector>
 
 #include "libatlas/pack/layout.h"
@@ -155,6 +156,20 @@ TEST(Presets, TheBoundOfOneEnormousFullPageIsOne) {
     EXPECT_EQ(r.pages.size(), 1u);
     EXPECT_EQ(r.page_lower_bound, 1u);
   }
+}
+
+// A page of 8 x 8 has the area of four items of 4 x 4.
+TEST(Presets, TheBoundIsNeverBelowThatOfTheArea) {
+  PackOptions o;
+  o.page = {8, 8};
+  const PinnedRect pinned{0, {0, 0, 4, 4}};
+  for (const PackPreset preset : kPresets)
+    for (const bool pin : {false, true}) {
+      o.pinned = std::span(&pinned, pin ? 1 : 0);
+      EXPECT_EQ(packed(std::vector<Extent>(9, {4, 4}), with(preset, o)).page_lower_bound, 3u);
+      EXPECT_EQ(packed(std::vector<Extent>(8, {4, 4}), with(preset, o)).page_lower_bound, 2u);
+      EXPECT_EQ(packed({{1, 1}}, with(preset, o)).page_lower_bound, 1u);
+    }
 }
 
 TEST(Presets, ItemsWithoutAreaNeedACornerOnThePage) {

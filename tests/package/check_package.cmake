@@ -144,8 +144,8 @@ endforeach()
 run(${CMAKE_COMMAND} -G ${GENERATOR} -S ${BUILD}/tests/package/parent -B ${BUILD}/tests/package/parent/build
     -DCMAKE_CXX_COMPILER=${CXX} -DCMAKE_CXX_FLAGS=${FLAGS} ${disabled})
 
-# A project that hides symbols, joins sources and gathers libraries in one folder, and that makes a package
-# itself, which therefore cannot be part of an installation.
+# A project that hides symbols, joins sources, compiles them as games are, gathers libraries in one folder,
+# and makes a package itself, which therefore cannot be part of an installation.
 set(strict ${BUILD}/tests/package/strict_parent)
 file(REMOVE_RECURSE ${strict})
 file(WRITE ${strict}/CMakeLists.txt "
@@ -154,6 +154,8 @@ project(strict_parent LANGUAGES CXX)
 set(CMAKE_CXX_VISIBILITY_PRESET hidden)
 set(CMAKE_VISIBILITY_INLINES_HIDDEN ON)
 set(CMAKE_UNITY_BUILD ON)
+set(CMAKE_CXX_FLAGS \"\${CMAKE_CXX_FLAGS} -ffast-math\")
+add_compile_options(-fno-exceptions -fno-rtti)
 set(CMAKE_LIBRARY_OUTPUT_DIRECTORY \${CMAKE_BINARY_DIR}/gathered)
 add_library(my_zlib INTERFACE)
 add_library(ZLIB::ZLIB ALIAS my_zlib)
@@ -162,7 +164,12 @@ add_subdirectory(${SOURCE} libatlas)
 run(${CMAKE_COMMAND} -G ${GENERATOR} -S ${strict} -B ${strict}/build
     -DCMAKE_CXX_COMPILER=${CXX} -DCMAKE_CXX_FLAGS=${FLAGS} ${disabled})
 file(READ ${strict}/build/compile_commands.json commands)
-if(commands MATCHES "hidden|unity_" OR NOT commands MATCHES "LIBATLAS_BUILT_IN=[^ ]*gathered")
+# An option that is taken back later is without effect.
+foreach(option fast-math exceptions rtti)
+  string(REGEX REPLACE "-f(no-)?${option}[^\n]* -f(no-)?${option} " "-f\\2${option} " commands "${commands}")
+endforeach()
+if(commands MATCHES "hidden|unity_|-ffast-math|-fno-exceptions|-fno-rtti" OR
+   NOT commands MATCHES "LIBATLAS_BUILT_IN=[^ ]*gathered")
   message(FATAL_ERROR "a parent's settings reach libatlas: see ${strict}/build/compile_commands.json")
 endif()
 file(GLOB_RECURSE rules ${strict}/build/libatlas/*cmake_install.cmake)

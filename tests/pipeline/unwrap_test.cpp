@@ -185,6 +185,7 @@ TEST(Unwrap, PartsOfAChartAreKeptApartWhereAsked) {
   EXPECT_GT(near(*close), 10);
   EXPECT_LT(near(*open), 1);
   EXPECT_EQ(near(*open), open->gaps.near_after);
+  EXPECT_EQ(open->gaps.charts, 1u);
   EXPECT_LE(open->charts.distortion.stretch_999, options.charts.max_stretch);
   expect_sound(view, *open);
 }

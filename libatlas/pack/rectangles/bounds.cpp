@@ -58,6 +58,12 @@ struct Shares {
 
 }  // namespace
 
+std::uint32_t area_bound(const Problem& problem) {
+  std::int64_t area = 0;  // exact, because callers pass no more than 2^62 cells
+  for (const Extent& e : problem.items) area += e.area();
+  return static_cast<std::uint32_t>((area + problem.page.area() - 1) / problem.page.area());
+}
+
 std::uint32_t page_bound(const Problem& problem) {
   if (problem.items.empty()) return 0;
   std::vector<std::int64_t> widths, heights;

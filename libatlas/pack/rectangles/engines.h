@@ -47,8 +47,9 @@ Layout solve(const Problem& problem, const PackOptions& options, const Context& 
              PackResult& result);
 
 // Lower bounds: no packing of all items uses fewer pages (bins) or less height (a strip). The bound
-// on pages follows from dual feasible functions (Fekete and Schepers 2004), the bound on height
-// from the area and from single sides.
+// on pages follows from the area alone, which takes no time, or from dual feasible functions
+// (Fekete and Schepers 2004); the bound on height follows from the area and from single sides.
+std::uint32_t area_bound(const Problem& problem);
 std::uint32_t page_bound(const Problem& problem);
 std::int64_t height_bound(const Problem& problem);
 

@@ -270,12 +270,8 @@ Layout search_pages(const Problem& problem, const SearchLimits& limits, const Co
       start = std::move(pages);
     if (start.size() <= limits.enough_pages) break;
   }
-  // The bound takes longer than a layout, so it is only computed if the area does not decide. The
-  // sum is exact, because callers pass no more than 2^62 cells.
-  std::int64_t area = 0;
-  for (const Extent& e : problem.items) area += e.area();
-  const auto by_area =
-      static_cast<std::uint32_t>((area + problem.page.area() - 1) / problem.page.area());
+  // The bound takes longer than a layout, so it is only computed if the area does not decide.
+  const std::uint32_t by_area = area_bound(problem);
   result.page_lower_bound = start.size() > by_area ? page_bound(problem) : by_area;
   const std::uint32_t enough = std::max(result.page_lower_bound, limits.enough_pages);
   if (limits.other_starts && start.size() > enough) start_with_fewer(problem, start, result);

@@ -176,6 +176,7 @@ Layout solve(const Problem& problem, const PackOptions& options, const Context& 
              PackResult& result) {
   if (problem.items.empty()) return {};
   const bool strip = options.page.height == 0;
+  result.page_lower_bound = strip ? 1 : area_bound(problem);
   const SearchLimits limits = limits_for(problem, options, strip);
   if (options.engine != PackEngine::automatic) {
     const std::vector<std::uint32_t> order = sorted_items(problem.items, Order::height);
@@ -193,7 +194,6 @@ Layout solve(const Problem& problem, const PackOptions& options, const Context& 
     return search_first_fit(problem, pinned, context, result);
   }
   if (options.preset == PackPreset::fast) {
-    result.page_lower_bound = 1;
     ++result.layouts_tried;
     return pack_widest_first(problem);
   }

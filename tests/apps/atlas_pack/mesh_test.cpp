@@ -18,31 +18,50 @@
 namespace atlas::test {
 namespace {
 
-TEST_F(AtlasPack, MeshChartsAtUniformDensity) {
-  // Two unit squares whose uvs differ in size by a factor of ten.
-  write("m.obj",
-        "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 1\nv 1 0 1\nv 1 1 1\nv 0 1 1\n"
-        "vt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\nvt 0 0\nvt 0.1 0\nvt 0.1 0.1\nvt 0 0.1\n"
-        "f 1/1 2/2 3/3\nf 1/1 3/3 4/4\nf 5/5 6/6 7/7\nf 5/5 7/7 8/8\n");
-  const RunResult r = run("mesh m.obj --page 128 --padding 2 -o out.obj --preview p.png");
-  ASSERT_EQ(r.exit_code, 0) << r.output;
-  EXPECT_TRUE(fs::exists(dir_ / "p.png"));
-  std::istringstream lines(read("out.obj"));
-  std::vector<std::pair<double, double>> vt, uv;  // uv: three per triangle
+// Returns the uv area of every face of an OBJ file of triangles, times two.
+std::vector<double> uv_areas(const std::string& obj) {
+  std::vector<std::pair<double, double>> vt;
+  std::vector<double> areas;
+  std::istringstream lines(obj);
   for (std::string line; std::getline(lines, line);) {
     double u = 0, v = 0;
     std::size_t t[3];
     if (std::sscanf(line.c_str(), "vt %lf %lf", &u, &v) == 2) vt.emplace_back(u, v);
-    if (std::sscanf(line.c_str(), "f %*d/%zu %*d/%zu %*d/%zu", &t[0], &t[1], &t[2]) == 3)
-      for (const std::size_t k : t) uv.push_back(vt.at(k - 1));
+    if (std::sscanf(line.c_str(), "f %*d/%zu %*d/%zu %*d/%zu", &t[0], &t[1], &t[2]) != 3) continue;
+    const auto a = vt.at(t[0] - 1), b = vt.at(t[1] - 1), c = vt.at(t[2] - 1);
+    areas.push_back(std::abs((b.first - a.first) * (c.second - a.second) -
+                             (b.second - a.second) * (c.first - a.first)));
   }
-  ASSERT_EQ(uv.size(), 12u);
-  const auto area = [&](std::size_t k) {
-    return std::abs((uv[k + 1].first - uv[k].first) * (uv[k + 2].second - uv[k].second) -
-                    (uv[k + 1].second - uv[k].second) * (uv[k + 2].first - uv[k].first));
-  };
-  for (std::size_t k = 3; k < 12; k += 3) EXPECT_NEAR(area(k), area(0), 1e-6);
-  EXPECT_GT(area(0), 0.1);
+  return areas;
+}
+
+// Two unit squares whose uvs differ in size by a factor of ten.
+constexpr const char* kUnequalSquares =
+    "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 1\nv 1 0 1\nv 1 1 1\nv 0 1 1\n"
+    "vt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\nvt 0 0\nvt 0.1 0\nvt 0.1 0.1\nvt 0 0.1\n"
+    "f 1/1 2/2 3/3\nf 1/1 3/3 4/4\nf 5/5 6/6 7/7\nf 5/5 7/7 8/8\n";
+
+TEST_F(AtlasPack, MeshChartsAtUniformDensity) {
+  write("m.obj", kUnequalSquares);
+  const RunResult r = run("mesh m.obj --page 128 --padding 2 -o out.obj --preview p.png");
+  ASSERT_EQ(r.exit_code, 0) << r.output;
+  EXPECT_TRUE(fs::exists(dir_ / "p.png"));
+  const std::vector<double> areas = uv_areas(read("out.obj"));
+  ASSERT_EQ(areas.size(), 4u);
+  for (const double area : areas) EXPECT_NEAR(area, areas[0], 1e-6);
+  EXPECT_GT(areas[0], 0.1);
+}
+
+// The larger square nearly fills the page: 1 / 1.1 of its side, less the padding.
+TEST_F(AtlasPack, MeshChartsKeepTheDensityThatTheyHave) {
+  write("m.obj", kUnequalSquares);
+  const RunResult r = run("mesh m.obj --page 128 --padding 2 --keep-density -o out.obj");
+  ASSERT_EQ(r.exit_code, 0) << r.output;
+  const std::vector<double> areas = uv_areas(read("out.obj"));
+  ASSERT_EQ(areas.size(), 4u);
+  for (const std::size_t square : {0, 2}) EXPECT_NEAR(areas[square], areas[square + 1], 1e-6);
+  EXPECT_NEAR(areas[0] / areas[2], 100, 0.01);
+  EXPECT_GT(areas[0], 0.75);
 }
 
 // A square on a page four times as wide as high has uvs a quarter as wide as high. Its shape is
