@@ -246,6 +246,28 @@ TEST_F(MappedFloor, VerticesHaveTheLightOfWhatIsOffTheLightmap) {
   EXPECT_FALSE(view().baked());
 }
 
+// More texels than any driver takes.
+TEST_F(MappedFloor, ImagesThatAreTooLargeAreNamed) {
+  constexpr int kMany = 1 << 20;
+  test_context();
+  const auto error = [&] { return Renderer::make(view(), options_).status(); };
+  lay_on(ImageF(kMany, 1, 3, 1));
+  EXPECT_EQ(error().code(), ErrorCode::unsupported);
+  EXPECT_EQ(error().message().find("page 0 of the lightmap has 1048576 x 1 texels; the driver"), 0u)
+      << error().message();
+  EXPECT_NE(error().message().find("(resize the image)"), std::string::npos);
+  scene_.lightmap = nullptr;
+  Texture wide;
+  wide.path = "wide.png";
+  wide.image = Image8(kMany, 1, 3, 128);
+  scene_.textures.push_back(wide);
+  scene_.materials[0].texture = 0;
+  scene_.texcoords = {{0, 0}};
+  scene_.texcoord_indices.assign(scene_.indices.size(), 0);
+  EXPECT_EQ(error().message().find("wide.png: the texture has 1048576 x 1 texels; the driver"), 0u)
+      << error().message();
+}
+
 TEST_F(MappedFloor, UnlitMaterialsShowTheirOwnLight) {
   Texture t;
   t.image = Image8(4, 4, 3, 128);  // 0.2158 linear
