@@ -22,12 +22,12 @@ struct ViewpointOptions {
 
 // Chooses a point inside the scene, above a floor, with free space around it and the longest view
 // ahead, a person's distance from walls where the room is that wide, and a view of something lit if
-// the light is known. If the scene surrounds no such point (a single object seen from outside),
-// chooses a point outside from which the whole scene is seen. Positions and the result are relative
-// to World::origin. The scene is examined on a voxel grid, in which every triangle marks the cells
-// that it passes, so the cost is linear in the triangles plus a constant. The result is
-// deterministic. Preconditions: indices are in range, positions finite, `light` empty or as long
-// as the list of triangles.
+// the light is known. If the scene surrounds no such point, or only in hollows of an object that
+// take little of its floor plan, chooses a point outside from which the whole scene is seen.
+// Positions and the result are relative to World::origin. The scene is examined on a voxel grid, in
+// which every triangle marks the cells that it passes, so the cost is linear in the triangles plus
+// a constant. The result is deterministic. Preconditions: indices are in range, positions finite,
+// `light` empty or as long as the list of triangles.
 Viewpoint choose_viewpoint(std::span<const Vec3f> positions, std::span<const std::uint32_t> indices,
                            const ViewpointOptions& options, const Context& context);
 

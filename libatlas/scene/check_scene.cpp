@@ -124,6 +124,8 @@ Status check_lightmap(const Scene& scene) {
   if (map.texcoord_indices.size() != 3 * triangles || map.triangle_page.size() != triangles)
     return wrong("lightmap has {} texcoord_indices and {} pages for {} triangles",
                  map.texcoord_indices.size(), map.triangle_page.size(), triangles);
+  if (!(map.white >= 0 && std::isfinite(map.white)))
+    return wrong("lightmap.white is {} (must be finite, 0 or more)", map.white);
   if (const std::size_t v = first_not_finite(map.texcoords); v < map.texcoords.size())
     return wrong("lightmap.texcoords[{}] is not finite", v);
   for (std::size_t p = 0; p < map.pages.size(); ++p) {

@@ -75,6 +75,7 @@ struct SceneLightmap {
   // if any, at its vertices.
   std::vector<std::uint32_t> texcoord_indices = {};
   std::vector<std::uint32_t> triangle_page = {};  // 1 per triangle, into pages
+  float white = 0;  // the light that is meant to be shown as white, in that unit; 0: not known
 };
 
 // Returns whether a surface can reflect this share of the light: all components are within 0..1.

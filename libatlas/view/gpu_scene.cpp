@@ -69,13 +69,14 @@ Status check_size(const std::string& what, int width, int height) {
   GLint largest = 0;
   glGetIntegerv(GL_MAX_TEXTURE_SIZE, &largest);
   if (width >= 1 && height >= 1 && width <= largest && height <= largest) return {};
-  return {ErrorCode::unsupported, fmt::format("{} of {} x {} texels; the driver takes 1 to {}",
-                                              what, width, height, largest)};
+  return {ErrorCode::unsupported,
+          fmt::format("{} has {} x {} texels; the driver takes 1 to {} a side (resize the image)",
+                      what, width, height, largest)};
 }
 
 Result<GlTexture> texture_of(const Texture& texture, int least) {
   const Image8& image = texture.image;
-  if (Status s = check_size(texture.path.string() + ": a texture", image.width, image.height);
+  if (Status s = check_size(texture.path.string() + ": the texture", image.width, image.height);
       !s.ok())
     return s;
   const int n = image.channels;
@@ -147,8 +148,7 @@ Status upload_textures(const ViewScene& scene, GpuScene& gpu) {
 
 // The light is stored as half floats, whose largest value is 65504: once scaled, most of it is
 // below 1. It has no more mip levels than are shown.
-Result<GlTexture> light_texture(const ImageF& page, double scale) {
-  if (Status s = check_size("a page of the lightmap", page.width, page.height); !s.ok()) return s;
+GlTexture light_texture(const ImageF& page, double scale) {
   const int levels =
       std::min(int(std::bit_width(unsigned(std::max(page.width, page.height)))), kPageLevels + 1);
   GlTexture t = make_texture(GL_RGB16F, page.width, page.height, levels);
@@ -171,10 +171,12 @@ Status upload_lightmap(const ViewScene& scene, GpuScene& gpu) {
     if (c.look.light_page < 0) continue;
     GlTexture& page = gpu.light_pages[std::size_t(c.look.light_page)];
     if (page) continue;
-    Result<GlTexture> made =
-        light_texture(scene.lightmap->pages[std::size_t(c.look.light_page)], scene.light_scale);
-    if (!made.ok()) return made.status();
-    page = std::move(made.value());
+    const ImageF& image = scene.lightmap->pages[std::size_t(c.look.light_page)];
+    if (Status s = check_size(fmt::format("page {} of the lightmap", c.look.light_page),
+                              image.width, image.height);
+        !s.ok())
+      return s;
+    page = light_texture(image, scene.light_scale);
   }
   gpu.dark = one_texel(0);
   return {};

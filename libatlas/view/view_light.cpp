@@ -57,6 +57,7 @@ Vec3f light_on_page(const ImageF& page, const Vec2f& uv) {
 }
 
 double light_scale_of(const ViewScene& view) {
+  if (view.lightmap && view.lightmap->white > 0) return 1.0 / double(view.lightmap->white);
   std::vector<float> lumas;
   lumas.reserve(view.positions.size());
   const std::vector<bool> mapped = add_mapped(view, lumas);

@@ -76,7 +76,9 @@ struct ViewScene {
   // fills it in.
   std::vector<std::filesystem::path> files = {};
   double metres_per_unit = 1;  // > 0; used for the height of a visitor's eye
-  double light_scale = 1;      // exposure that puts the 99th percentile of the light at 1
+  // Exposure that puts the white of the lightmap at 1, or the 99th percentile of the light where no
+  // white is named.
+  double light_scale = 1;
 
   std::size_t triangle_count() const { return indices.size() / 3; }
   bool textured() const { return !texcoords.empty(); }

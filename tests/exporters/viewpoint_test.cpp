@@ -8,12 +8,15 @@
 #include <cmath>
 #include <fstream>
 #include <iterator>
+#include <numbers>
 #include <string>
 #include <vector>
 
+#include "libatlas/scene/reader.h"
 #include "tests/exporters/boxes.h"
 #include "tests/exporters/worlds.h"
 #include "tests/scene/temp_folder.h"
+#include "tests/support/shared_data.h"
 
 namespace atlas {
 namespace {
@@ -218,6 +221,68 @@ TEST(ViewpointChoice, StaysOutOfABoreInAnObject) {
   ViewpointOptions options;
   options.up = Up::z;
   EXPECT_FALSE(choose_viewpoint(part.positions, part.indices, options, {}).inside);
+}
+
+// A ring of any size that stands on the ground, such as a wheel in millimetres: people could stand
+// in the hole of a large one, and a third of what they see there is open.
+TEST(ViewpointChoice, StaysOutOfTheHoleOfARing) {
+  constexpr int kAround = 96, kAcross = 48;
+  for (const double radius : {0.1, 1.0, 10.0, 100.0, 1000.0}) {
+    for (const double thickness : {0.5, 0.7}) {
+      Triangles ring;
+      for (int i = 0; i < kAround; ++i) {
+        for (int j = 0; j < kAcross; ++j) {
+          const double a = 2 * std::numbers::pi * i / kAround,
+                       b = 2 * std::numbers::pi * j / kAcross;
+          const double from_axis = radius * (1 + thickness * std::cos(b));
+          ring.positions.push_back({float(radius * thickness * std::sin(b)),
+                                    float(from_axis * std::cos(a)),
+                                    float(from_axis * std::sin(a))});
+          const auto at = [&](int k, int l) {
+            return std::uint32_t((i + k) % kAround * kAcross + (j + l) % kAcross);
+          };
+          for (const std::uint32_t v : {at(0, 0), at(1, 0), at(1, 1), at(0, 0), at(1, 1), at(0, 1)})
+            ring.indices.push_back(v);
+        }
+      }
+      ViewpointOptions options;
+      options.up = Up::z;
+      EXPECT_FALSE(choose_viewpoint(ring.positions, ring.indices, options, {}).inside)
+          << radius << ", " << thickness;
+    }
+  }
+}
+
+// Scans and parts often come without a unit. Objects are seen from outside in any unit. A gazebo
+// is a small building.
+TEST(ViewpointChoice, StaysOutOfModelsInAnyUnit) {
+  const auto models = test::shared_models();
+  if (models.empty()) GTEST_SKIP() << test::lacks("models");
+  for (const auto& path : models) {
+    const auto loaded = read_scene(path, {}, {});
+    ASSERT_TRUE(loaded.ok()) << loaded.status().message();
+    for (const double metres : {0.001, 0.01, 0.1, 1.0, 10.0, 100.0, 1000.0}) {
+      ViewpointOptions options;
+      options.metres_per_unit = metres;
+      const Viewpoint view =
+          choose_viewpoint(loaded->scene.positions, loaded->scene.indices, options, {});
+      EXPECT_EQ(view.inside, path.stem() == "gazebo" && metres == 1) << path << ", " << metres;
+    }
+  }
+}
+
+TEST(ViewpointChoice, EntersTheSharedRoomInAnyUnit) {
+  const auto folder = test::shared_data("room");
+  if (!folder) GTEST_SKIP() << test::lacks("room");
+  const auto loaded = read_scene(*folder / "scene.obj", {}, {});
+  ASSERT_TRUE(loaded.ok()) << loaded.status().message();
+  for (const double metres : {0.001, 0.01, 0.1, 1.0, 10.0, 100.0, 1000.0}) {
+    ViewpointOptions options;
+    options.metres_per_unit = metres;
+    EXPECT_TRUE(
+        choose_viewpoint(loaded->scene.positions, loaded->scene.indices, options, {}).inside)
+        << metres;
+  }
 }
 
 // In a space where nobody can stand, the eye is in the middle third of the height.

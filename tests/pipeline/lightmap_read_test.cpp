@@ -67,6 +67,10 @@ TEST(ReadLightmap, GivesTheLightBack) {
     EXPECT_EQ(images, std::ptrdiff_t(c.pages));
     EXPECT_EQ(read->unread_files.size(), c.exr ? c.pages : 0);
     const auto white = float(report->exposure_white);
+    if (c.tone == ToneOperator::linear)
+      EXPECT_NEAR(map.white, white, 1e-3f * white) << "an .obj has four digits";
+    else
+      EXPECT_EQ(map.white, 0);
     const Scene& s = read->scene;
     for (std::size_t k = 0; k < s.indices.size() && c.tone == ToneOperator::linear; ++k) {
       const Vec3f wanted = light_at(s.positions[s.indices[k]]);
@@ -127,6 +131,7 @@ TEST(ReadLightmap, OfAnObjNeedsItsTextureCoordinates) {
   EXPECT_EQ(some.scene.lightmap->texcoord_indices[0], Scene::kNoTexcoord);
   EXPECT_EQ(some.scene.lightmap->texcoord_indices[3], 0u);
   EXPECT_EQ(some.scene.lightmap->pages[0].texels[0], 5);
+  EXPECT_EQ(some.scene.lightmap->white, 5);
   some = read("f 1 2 3\n");
   EXPECT_EQ(some.defects.count(DefectKind::lightmap_unusable), 1u);
   EXPECT_FALSE(some.scene.lightmap);

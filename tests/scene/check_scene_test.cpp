@@ -147,6 +147,13 @@ TEST(CheckScene, NamesArrayAndElement) {
        }},
       {"lightmap has 5 texcoord_indices and 2 pages for 2 triangles",
        [](Scene& s) { spoil_lightmap(s, [](SceneLightmap& m) { m.texcoord_indices.resize(5); }); }},
+      {"lightmap.white is -1 (must be finite, 0 or more)",
+       [](Scene& s) { spoil_lightmap(s, [](SceneLightmap& m) { m.white = -1; }); }},
+      {"lightmap.white is inf",
+       [](Scene& s) {
+         spoil_lightmap(s,
+                        [](SceneLightmap& m) { m.white = std::numeric_limits<float>::infinity(); });
+       }},
       {"lightmap has 6 texcoord_indices and 0 pages",
        [](Scene& s) { spoil_lightmap(s, [](SceneLightmap& m) { m.triangle_page.clear(); }); }},
       {"lightmap.texcoords[1] is not finite",

@@ -102,9 +102,11 @@ TEST_F(GltfLightmaps, OtherwiseTheImagesTimesWhite) {
   LoadedScene read = loaded();
   EXPECT_TRUE(read.defects.empty());
   EXPECT_EQ(values(read.scene), (std::vector<float>{100 * srgb_decode8(128), 100}));
+  EXPECT_EQ(read.scene.lightmap->white, 100);
   map_.erase("white");
   read = loaded();
   EXPECT_EQ(values(read.scene), (std::vector<float>{srgb_decode8(128), 1}));
+  EXPECT_EQ(read.scene.lightmap->white, 0);
 }
 
 TEST_F(GltfLightmaps, AMissingLinearImageIsToldAndTheOthersAreUsed) {

@@ -246,6 +246,28 @@ TEST_F(MappedFloor, VerticesHaveTheLightOfWhatIsOffTheLightmap) {
   EXPECT_FALSE(view().baked());
 }
 
+// More texels than any driver takes.
+TEST_F(MappedFloor, ImagesThatAreTooLargeAreNamed) {
+  constexpr int kMany = 1 << 20;
+  test_context();
+  const auto error = [&] { return Renderer::make(view(), options_).status(); };
+  lay_on(ImageF(kMany, 1, 3, 1));
+  EXPECT_EQ(error().code(), ErrorCode::unsupported);
+  EXPECT_EQ(error().message().find("page 0 of the lightmap has 1048576 x 1 texels; the driver"), 0u)
+      << error().message();
+  EXPECT_NE(error().message().find("(resize the image)"), std::string::npos);
+  scene_.lightmap = nullptr;
+  Texture wide;
+  wide.path = "wide.png";
+  wide.image = Image8(kMany, 1, 3, 128);
+  scene_.textures.push_back(wide);
+  scene_.materials[0].texture = 0;
+  scene_.texcoords = {{0, 0}};
+  scene_.texcoord_indices.assign(scene_.indices.size(), 0);
+  EXPECT_EQ(error().message().find("wide.png: the texture has 1048576 x 1 texels; the driver"), 0u)
+      << error().message();
+}
+
 TEST_F(MappedFloor, UnlitMaterialsShowTheirOwnLight) {
   Texture t;
   t.image = Image8(4, 4, 3, 128);  // 0.2158 linear
@@ -325,14 +347,44 @@ class LightmapFiles : public Folder {
 TEST_F(LightmapFiles, PicturesOfBothKindsOfImagesAreAlike) {
   const ViewScene bytes = load({{"images", {"lit_0.png"}}, {"texCoord", 1}, {"white", 80}});
   const ViewScene floats =
-      load({{"images", {"gone.png"}}, {"linear", {"lit_0.exr"}}, {"texCoord", 1}, {"white", 1}});
+      load({{"images", {"gone.png"}}, {"linear", {"lit_0.exr"}}, {"texCoord", 1}, {"white", 80}});
   EXPECT_TRUE(said_.empty()) << said_[0];
-  EXPECT_NEAR(bytes.light_scale * 80 * srgb_decode8(128), 1, 1e-5);
-  EXPECT_NEAR(floats.light_scale, bytes.light_scale, 1e-3 * bytes.light_scale);
-  EXPECT_NEAR(middle(bytes), encoded(0.5 * 0.6), 1.5);
+  EXPECT_NEAR(middle(bytes), encoded(0.5 * 0.6 * srgb_decode8(128)), 1.5);
   EXPECT_NEAR(middle(floats), middle(bytes), 1);
   const auto& files = bytes.files;  // which pictures must not replace
   EXPECT_NE(std::find(files.begin(), files.end(), path_ / "lit_0.png"), files.end());
+}
+
+// Half of the map is brighter than white, which the PNG clips.
+TEST_F(LightmapFiles, BothKindsOfImagesAreExposedByTheirWhite) {
+  ImageF light(4, 4, 3, 20);
+  Image8 codes(4, 4, 3, std::uint8_t(std::lround(encoded(0.25))));
+  for (int y = 0; y < 4; ++y) {
+    std::fill_n(light.at(2, y), 6, 900.0f);
+    std::fill_n(codes.at(2, y), 6, std::uint8_t{255});
+  }
+  ASSERT_TRUE(write_exr(path_ / "lit_0.exr", light).ok());
+  ASSERT_TRUE(write_png(path_ / "lit_0.png", codes, {}).ok());
+  json map{{"images", {"lit_0.png"}}, {"texCoord", 1}, {"white", 80}};
+  const ViewScene bytes = load(map);
+  map["linear"] = {"lit_0.exr"};
+  const ViewScene floats = load(map);
+  RenderOptions o = small();
+  o.shading = Shading::unlit;
+  Camera camera;
+  camera.eye = {0, 0, 2};
+  const Image8 clipped = picture(bytes, camera, o), whole = picture(floats, camera, o);
+  EXPECT_NEAR(*clipped.at(18, 16), encoded(0.6 * 0.25), 1.5);
+  EXPECT_NEAR(*whole.at(18, 16), encoded(0.6 * 0.25), 1.5);
+  EXPECT_NEAR(*clipped.at(30, 16), encoded(0.6), 1.5);
+  EXPECT_EQ(*whole.at(30, 16), 255) << "0.6 x 900 is far above white";
+}
+
+TEST_F(LightmapFiles, WithoutAWhiteTheLightIsMeasured) {
+  const json map{{"linear", {"lit_0.exr"}}, {"texCoord", 1}};
+  const ViewScene view = load(map);
+  EXPECT_NEAR(view.light_scale * 80 * srgb_decode8(128), 1, 1e-3);  // a page of half floats
+  EXPECT_NEAR(middle(view), encoded(0.5 * 0.6), 1.5);
 }
 
 TEST_F(LightmapFiles, WithoutItsImagesASceneIsShownAsOneWithoutLight) {

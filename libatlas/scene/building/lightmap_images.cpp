@@ -112,11 +112,12 @@ void note_lightmap(const LightmapImages& named, SceneBuilder& builder) {
 Result<std::vector<ImageF>> read_lightmap(const LightmapImages& named,
                                           const std::vector<bool>& used, SceneBuilder& builder,
                                           const Context& context) {
-  if (named.linear.empty()) return read_pages(named.images, named.white, used, builder, context);
+  const float white = named.white.value_or(1.0f);
+  if (named.linear.empty()) return read_pages(named.images, white, used, builder, context);
   Result<std::vector<ImageF>> linear = read_pages(named.linear, 0, used, builder, context);
   if (linear.ok() || named.images.empty()) return linear;
   builder.defects.add(DefectKind::lightmap_clipped, [&] { return linear.status().message(); });
-  return read_pages(named.images, named.white, used, builder, context);
+  return read_pages(named.images, white, used, builder, context);
 }
 
 }  // namespace atlas

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -14,7 +15,8 @@ namespace atlas {
 // plain.
 struct LightmapImages {
   std::vector<std::string> images, linear;  // a page each; either may be empty
-  float white = 1;                          // the light that `images` show as 1
+  // > 0, the light that `images` show as 1. Nothing: unknown, taken as 1.
+  std::optional<float> white = {};
 };
 
 // Returns the file that such a name in `file` means.

@@ -163,6 +163,7 @@ void SceneBuilder::keep_used(Scene& scene) {
 void SceneBuilder::lay_on_light_page() {
   auto map = std::make_shared<SceneLightmap>();
   map->pages.push_back(std::move(light_page));
+  map->white = light_white;
   map->texcoords = texcoords;
   map->texcoord_indices = texcoord_indices_;
   map->texcoord_indices.resize(indices_.size(), Scene::kNoTexcoord);

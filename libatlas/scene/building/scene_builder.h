@@ -87,6 +87,7 @@ class SceneBuilder {
   bool wants_normals = false;                     // false: normals are ignored, whatever they hold
   bool wants_rest = false;                        // ReadOptions::rest
   bool wants_lightmap = false;                    // ReadOptions::lightmap
+  float light_white = 0;                          // SceneLightmap::white, of light_page
   std::shared_ptr<const SceneLightmap> lightmap;  // Scene::lightmap
   ImageF light_page;  // if not empty, the only page of a lightmap whose uvs are `texcoords`
   std::shared_ptr<GltfSource> source;        // Scene::source; if set, all of `textures` are kept

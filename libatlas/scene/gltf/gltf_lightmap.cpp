@@ -171,6 +171,7 @@ void GltfLightmap::load(const Context& context) {
   map_ = std::make_shared<SceneLightmap>();
   map_->pages = std::move(*pages);
   map_->texcoords = std::move(texcoords_);
+  map_->white = named_->white.value_or(0.0f);
 }
 
 void GltfLightmap::add_triangle(const Part& part, const std::array<std::uint32_t, 3>& corners) {

@@ -20,8 +20,8 @@ std::optional<LightmapImages> lightmap_in_comment(std::string_view line) {
     double white = 0;
     const char* const end = line.data() + line.size();
     if (parse_number(line.data() + kWhite.size(), end, white) == nullptr) return {};
+    if (!(float(white) > 0 && white <= double(kMostLight))) return {};
     named.white = float(white);
-    if (!(named.white > 0 && named.white <= kMostLight)) return {};
   }
   const std::size_t more = line.find(kMore);
   if (more == line.npos || !line.ends_with(kLinear)) return named;
@@ -32,10 +32,12 @@ std::optional<LightmapImages> lightmap_in_comment(std::string_view line) {
 
 void read_obj_lightmap(const LightmapImages& named, SceneBuilder& builder, const Context& context) {
   auto pages = read_lightmap(named, {true}, builder, context);
-  if (pages.ok())
-    builder.light_page = std::move(pages->front());
-  else
+  if (!pages.ok()) {
     builder.defects.add(DefectKind::lightmap_unusable, [&] { return pages.status().message(); });
+    return;
+  }
+  builder.light_page = std::move(pages->front());
+  builder.light_white = named.white.value_or(0.0f);
 }
 
 }  // namespace atlas
