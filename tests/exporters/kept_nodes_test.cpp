@@ -255,6 +255,30 @@ TEST(KeptGltf, ANodeAboveTurnsOrScales) {
   }
 }
 
+// Root nodes of a scene have no parent, in no scene (glTF 2.0, 3.5.2).
+TEST(KeptGltf, ANodeBelowAnotherIsNoRootOfOtherScenes) {
+  const TempFolder folder;
+  Gltf gltf = textured(folder);
+  gltf.j["nodes"].push_back({{"name", "elsewhere"}});
+  gltf.j["scenes"].push_back({{"nodes", {0, 1}}});
+  gltf.j["scenes"].push_back({{"nodes", {0}}});
+  const auto loaded = read_scene(folder.write("s.glb", gltf.glb()), kGltfRest, {});
+  ASSERT_TRUE(loaded.ok());
+  World world = world_of(loaded->scene);
+  const auto same = write_kept(world, folder / "same.glb");
+  ASSERT_TRUE(same.ok());
+  EXPECT_EQ(same->not_kept, std::vector<std::string>{});
+  EXPECT_EQ(GltfOracle(folder / "same.glb").document["scenes"], gltf.j["scenes"]);
+  world.metres_per_unit = 0.5;
+  const auto written = write_kept(world, folder / "w.glb");
+  ASSERT_TRUE(written.ok());
+  EXPECT_EQ(written->not_kept,
+            std::vector<std::string>{"2 x root nodes of other scenes, which are scaled or turned"});
+  const json document = GltfOracle(folder / "w.glb").document;
+  EXPECT_EQ(document["nodes"][2]["children"], json{0});
+  EXPECT_EQ(document["scenes"], json({{{"nodes", {2}}}, {{"nodes", {1}}}, json::object()}));
+}
+
 // The file is a library of meshes, without nodes and scenes.
 TEST(KeptGltf, MeshesWithoutNodesGetSome) {
   const TempFolder folder;

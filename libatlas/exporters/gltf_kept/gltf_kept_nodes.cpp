@@ -8,6 +8,7 @@
 
 #include "libatlas/exporters/gltf/gltf_document.h"
 #include "libatlas/exporters/gltf_kept/gltf_kept_meshes.h"
+#include "libatlas/scene/gltf/gltf_check.h"
 #include "libatlas/scene/gltf/gltf_instances.h"
 #include "libatlas/scene/scene.h"
 
@@ -146,11 +147,35 @@ Roots divide_roots(const GltfSource& source, const json& nodes, const json& root
   return result;
 }
 
+std::size_t shown_scene(const GltfSource& source) {
+  return source.model.defaultScene >= 0 ? std::size_t(source.model.defaultScene) : 0;
+}
+
+// Takes nodes that are below another one now out of the lists of root nodes that scenes have, since
+// glTF allows only root nodes there. Those of the scene that readers show are set afterwards.
+void leave_out_of_scenes(const GltfSource& source, const json& moved, json& document,
+                         Losses& losses) {
+  const std::set<json> below(moved.begin(), moved.end());
+  for (std::size_t scene = 0; scene < source.model.scenes.size(); ++scene) {
+    json* roots = member_at(&document["scenes"][scene], "nodes");
+    if (scene == shown_scene(source) || roots == nullptr || !roots->is_array()) continue;
+    json left = json::array();
+    for (const json& root : *roots)
+      if (!below.contains(root)) left.push_back(root);
+    losses.add("root nodes of other scenes, which are scaled or turned",
+               roots->size() - left.size());
+    if (left.empty())
+      document["scenes"][scene].erase("nodes");
+    else
+      *roots = std::move(left);
+  }
+}
+
 // Makes `roots` the root nodes of the scene that readers show.
 void set_roots(const GltfSource& source, json roots, json& document) {
   json& scenes = document["scenes"];
   if (!scenes.is_array()) scenes = json::array();
-  std::size_t shown = source.model.defaultScene >= 0 ? std::size_t(source.model.defaultScene) : 0;
+  std::size_t shown = shown_scene(source);
   if (shown >= scenes.size()) {
     shown = scenes.size();
     scenes.push_back(json::object());
@@ -201,6 +226,7 @@ void place_kept_meshes(const World& world, const std::vector<std::size_t>& meshe
     Roots divided = divide_roots(source, nodes, roots);
     roots = std::move(divided.skinned);
     if (!divided.moved.empty()) {
+      leave_out_of_scenes(source, divided.moved, document, losses);
       top["children"] = std::move(divided.moved);
       roots.insert(roots.begin(), nodes.size());
       nodes.push_back(std::move(top));
