@@ -15,8 +15,8 @@
 #include "benchmarks/pack/command_line.h"
 #include "libatlas/core/clock.h"
 #include "libatlas/pack/fit.h"
-#include "tests/pack/checks.h"
 #include "tests/support/atlas_measure.h"
+#include "tests/support/layout_checks.h"
 
 namespace {
 

@@ -10,7 +10,7 @@
 
 #include "libatlas/bake/bake.h"
 #include "libatlas/core/srgb.h"
-#include "tests/texture/lit_shapes.h"
+#include "tests/support/lit_shapes.h"
 
 namespace atlas {
 

@@ -8,7 +8,7 @@
 #include <random>
 
 #include "tests/bake/bake_fixture.h"
-#include "tests/charts/broken_charts.h"
+#include "tests/support/broken_charts.h"
 
 namespace atlas {
 namespace {

@@ -14,7 +14,7 @@
 #include "benchmarks/support/callgrind.h"
 #include "benchmarks/support/staged.h"
 #include "libatlas/core/parallel.h"
-#include "tests/scene/temp_folder.h"
+#include "tests/support/temp_folder.h"
 
 namespace atlas::bench {
 namespace {

@@ -8,8 +8,8 @@
 
 #include "libatlas/charts/gaps.h"
 #include "libatlas/charts/tiles.h"
-#include "tests/charts/broken_charts.h"
 #include "tests/charts/chart_checks.h"
+#include "tests/support/broken_charts.h"
 
 namespace atlas::test {
 namespace {

@@ -11,7 +11,7 @@
 #include "libatlas/scene/reader.h"
 #include "tests/charts/chart_checks.h"
 #include "tests/charts/invariance.h"
-#include "tests/scene/temp_folder.h"
+#include "tests/support/temp_folder.h"
 
 namespace atlas::test {
 namespace {

@@ -15,8 +15,8 @@
 #include "libatlas/core/leftovers.h"
 #include "libatlas/core/links.h"
 #include "tests/core/no_root.h"
-#include "tests/scene/temp_folder.h"
 #include "tests/support/full_disk.h"
+#include "tests/support/temp_folder.h"
 
 namespace atlas {
 namespace {

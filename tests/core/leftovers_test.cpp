@@ -11,7 +11,7 @@
 
 #include "libatlas/core/atomic_file.h"
 #include "tests/core/no_root.h"
-#include "tests/scene/temp_folder.h"
+#include "tests/support/temp_folder.h"
 
 namespace atlas {
 namespace {

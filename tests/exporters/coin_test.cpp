@@ -18,8 +18,8 @@
 
 #include "libatlas/image/image_io.h"
 #include "tests/exporters/worlds.h"
-#include "tests/scene/temp_folder.h"
 #include "tests/support/leaks.h"
+#include "tests/support/temp_folder.h"
 
 namespace atlas {
 namespace {

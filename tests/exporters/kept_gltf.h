@@ -12,9 +12,9 @@
 
 #include "libatlas/image/image_io.h"
 #include "tests/exporters/kept_worlds.h"
-#include "tests/scene/gltf_maker.h"
-#include "tests/scene/temp_folder.h"
+#include "tests/support/gltf_maker.h"
 #include "tests/support/gltf_oracle.h"
+#include "tests/support/temp_folder.h"
 
 namespace atlas::test {
 

@@ -11,9 +11,9 @@
 #include "libatlas/image/image_io.h"
 #include "libatlas/scene/reader.h"
 #include "tests/exporters/kept_worlds.h"
-#include "tests/scene/temp_folder.h"
 #include "tests/support/full_disk.h"
 #include "tests/support/kept_scene.h"
+#include "tests/support/temp_folder.h"
 
 namespace atlas::test {
 namespace {

@@ -6,7 +6,7 @@
 #include "libatlas/image/image_io.h"
 #include "libatlas/scene/reader.h"
 #include "tests/exporters/kept_gltf.h"
-#include "tests/scene/temp_folder.h"
+#include "tests/support/temp_folder.h"
 
 namespace atlas::test {
 namespace {

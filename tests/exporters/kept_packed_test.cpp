@@ -6,11 +6,11 @@
 #include <vector>
 
 #include "tests/exporters/kept_gltf.h"
-#include "tests/scene/draco_gltf.h"
-#include "tests/scene/gltf_maker.h"
-#include "tests/scene/packed_gltf.h"
-#include "tests/scene/temp_folder.h"
+#include "tests/support/draco_gltf.h"
+#include "tests/support/gltf_maker.h"
 #include "tests/support/gltf_oracle.h"
+#include "tests/support/packed_gltf.h"
+#include "tests/support/temp_folder.h"
 
 namespace atlas::test {
 namespace {

@@ -6,9 +6,9 @@
 
 #include "libatlas/scene/reader.h"
 #include "tests/exporters/kept_gltf.h"
-#include "tests/scene/gltf_maker.h"
-#include "tests/scene/temp_folder.h"
+#include "tests/support/gltf_maker.h"
 #include "tests/support/gltf_oracle.h"
+#include "tests/support/temp_folder.h"
 
 namespace atlas::test {
 namespace {

@@ -11,8 +11,8 @@
 #include "libatlas/scene/check_scene.h"
 #include "libatlas/scene/reader.h"
 #include "tests/exporters/kept_worlds.h"
-#include "tests/scene/temp_folder.h"
 #include "tests/support/kept_scene.h"
+#include "tests/support/temp_folder.h"
 
 namespace atlas {
 namespace {

@@ -10,9 +10,9 @@
 
 #include "libatlas/core/glm_bridge.h"
 #include "libatlas/exporters/viewpoint.h"
-#include "tests/exporters/boxes.h"
 #include "tests/exporters/kept_gltf.h"
 #include "tests/exporters/vrml_parser.h"
+#include "tests/support/boxes.h"
 
 namespace atlas::test {
 namespace {

@@ -12,8 +12,8 @@
 #include "libatlas/image/image_io.h"
 #include "libatlas/scene/reader.h"
 #include "tests/exporters/worlds.h"
-#include "tests/scene/temp_folder.h"
 #include "tests/support/slowness.h"
+#include "tests/support/temp_folder.h"
 
 namespace atlas {
 namespace {

@@ -13,10 +13,10 @@
 #include <vector>
 
 #include "libatlas/scene/reader.h"
-#include "tests/exporters/boxes.h"
 #include "tests/exporters/worlds.h"
-#include "tests/scene/temp_folder.h"
+#include "tests/support/boxes.h"
 #include "tests/support/shared_data.h"
+#include "tests/support/temp_folder.h"
 
 namespace atlas {
 namespace {

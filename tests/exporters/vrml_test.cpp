@@ -9,7 +9,7 @@
 #include "libatlas/scene/reader.h"
 #include "tests/exporters/vrml_parser.h"
 #include "tests/exporters/worlds.h"
-#include "tests/scene/temp_folder.h"
+#include "tests/support/temp_folder.h"
 
 namespace atlas {
 namespace {

@@ -7,8 +7,8 @@
 
 #include "tests/exporters/kept_gltf.h"
 #include "tests/exporters/worlds.h"
-#include "tests/scene/temp_folder.h"
 #include "tests/support/full_disk.h"
+#include "tests/support/temp_folder.h"
 
 namespace atlas::test {
 namespace {

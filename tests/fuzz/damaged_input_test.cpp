@@ -10,8 +10,8 @@
 
 #include "libatlas/image/image_io.h"
 #include "tests/fuzz/targets.h"
-#include "tests/image/file_bytes.h"
-#include "tests/scene/gltf_maker.h"
+#include "tests/support/file_bytes.h"
+#include "tests/support/gltf_maker.h"
 #include "tests/support/leaks.h"
 
 namespace atlas {

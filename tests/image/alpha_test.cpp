@@ -11,9 +11,9 @@
 
 #include "libatlas/image/image_io.h"
 #include "libatlas/image/webp_alpha.h"
-#include "tests/image/file_bytes.h"
-#include "tests/scene/temp_folder.h"
+#include "tests/support/file_bytes.h"
 #include "tests/support/leaks.h"
+#include "tests/support/temp_folder.h"
 
 namespace atlas {
 namespace {

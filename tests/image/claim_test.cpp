@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "libatlas/image/file_kind.h"
-#include "tests/image/file_bytes.h"
+#include "tests/support/file_bytes.h"
 
 namespace atlas {
 namespace {

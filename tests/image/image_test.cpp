@@ -10,9 +10,9 @@
 #include <numeric>
 #include <random>
 
-#include "tests/scene/temp_folder.h"
 #include "tests/support/full_disk.h"
 #include "tests/support/leaks.h"
+#include "tests/support/temp_folder.h"
 
 namespace atlas {
 namespace {

@@ -5,7 +5,7 @@
 #include <string>
 
 #include "libatlas/image/image_io.h"
-#include "tests/scene/temp_folder.h"
+#include "tests/support/temp_folder.h"
 
 namespace atlas {
 namespace {

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "libatlas/pack/rectangles/pull_in.h"
-#include "tests/pack/checks.h"
+#include "tests/support/layout_checks.h"
 
 namespace atlas {
 namespace {

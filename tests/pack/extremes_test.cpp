@@ -10,7 +10,7 @@
 #include "libatlas/pack/fitting/fit_bounds.h"
 #include "libatlas/pack/outlines/chart_outline.h"
 #include "libatlas/pack/outlines/outline_mask.h"
-#include "tests/pack/checks.h"
+#include "tests/support/layout_checks.h"
 #include "tests/support/slowness.h"
 
 namespace atlas {

@@ -8,8 +8,8 @@
 #include <string_view>
 #include <vector>
 
-#include "tests/pack/checks.h"
 #include "tests/pack/one_page.h"
+#include "tests/support/layout_checks.h"
 
 namespace atlas {
 namespace {

@@ -7,8 +7,8 @@
 #include <cmath>
 #include <vector>
 
-#include "tests/pack/checks.h"
 #include "tests/pack/one_page.h"
+#include "tests/support/layout_checks.h"
 
 namespace atlas {
 namespace {

@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "libatlas/pack/fit.h"
-#include "tests/pack/checks.h"
 #include "tests/pack/fits.h"
+#include "tests/support/layout_checks.h"
 
 namespace atlas {
 namespace {

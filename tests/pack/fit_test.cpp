@@ -6,8 +6,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "tests/pack/checks.h"
 #include "tests/pack/fits.h"
+#include "tests/support/layout_checks.h"
 
 namespace atlas {
 namespace {

@@ -6,7 +6,7 @@
 #include <atomic>
 #include <numeric>
 
-#include "tests/pack/checks.h"
+#include "tests/support/layout_checks.h"
 
 namespace atlas {
 namespace {

@@ -9,7 +9,7 @@
 
 #include "libatlas/pack/fit.h"
 #include "libatlas/pack/layout.h"
-#include "tests/pack/checks.h"
+#include "tests/support/layout_checks.h"
 
 namespace atlas::test {
 

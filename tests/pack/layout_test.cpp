@@ -2,8 +2,8 @@
 
 #include <gtest/gtest.h>
 
-#include "tests/pack/checks.h"
 #include "tests/pack/layout_fuzz.h"
+#include "tests/support/layout_checks.h"
 
 namespace atlas {
 namespace {

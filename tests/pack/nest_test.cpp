@@ -11,8 +11,8 @@
 #include <vector>
 
 #include "libatlas/pack/nesting/plain_page.h"
-#include "tests/pack/checks.h"
 #include "tests/pack/one_page.h"
+#include "tests/support/layout_checks.h"
 
 namespace atlas {
 namespace {

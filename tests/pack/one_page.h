@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "libatlas/pack/fitting/fit_search.h"
-#include "tests/pack/checks.h"
+#include "tests/support/layout_checks.h"
 
 namespace atlas::test {
 

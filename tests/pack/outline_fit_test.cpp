@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "libatlas/pack/fit.h"
-#include "tests/pack/checks.h"
 #include "tests/pack/one_page.h"
+#include "tests/support/layout_checks.h"
 
 namespace atlas {
 namespace {

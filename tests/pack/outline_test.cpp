@@ -7,7 +7,7 @@
 #include <cmath>
 
 #include "libatlas/pack/nesting/bit_page.h"
-#include "tests/pack/checks.h"
+#include "tests/support/layout_checks.h"
 
 namespace atlas {
 namespace {

@@ -13,7 +13,7 @@
 #include "libatlas/pack/nesting/nudge.h"
 #include "libatlas/pack/nesting/pair_overlaps.h"
 #include "libatlas/pack/nesting/weight_map.h"
-#include "tests/pack/checks.h"
+#include "tests/support/layout_checks.h"
 
 namespace atlas {
 namespace {

@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "tests/pack/checks.h"
+#include "tests/support/layout_checks.h"
 
 namespace atlas::test {
 

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "libatlas/pack/fitting/fit_pages.h"
-#include "tests/pack/checks.h"
+#include "tests/support/layout_checks.h"
 
 namespace atlas {
 namespace {

@@ -5,7 +5,7 @@
 
 #include "libatlas/core/clock.h"
 #include "libatlas/pack/pack.h"
-#include "tests/pack/checks.h"
+#include "tests/support/layout_checks.h"
 #include "tests/support/slowness.h"
 
 namespace atlas {

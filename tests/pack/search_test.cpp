@@ -12,7 +12,7 @@
 #include "libatlas/pack/rectangles/height_index.h"
 #include "libatlas/pack/rectangles/skyline.h"
 #include "libatlas/pack/rectangles/strip_beam.h"
-#include "tests/pack/checks.h"
+#include "tests/support/layout_checks.h"
 #include "tests/support/slowness.h"
 
 namespace atlas {

@@ -6,7 +6,7 @@
 #include <fstream>
 
 #include "libatlas/pack/pack.h"
-#include "tests/pack/checks.h"
+#include "tests/support/layout_checks.h"
 #include "tests/support/shared_data.h"
 
 namespace atlas {

@@ -6,8 +6,8 @@
 #include <cmath>
 #include <numeric>
 
-#include "tests/pack/checks.h"
 #include "tests/pack/one_page.h"
+#include "tests/support/layout_checks.h"
 
 namespace atlas {
 namespace {

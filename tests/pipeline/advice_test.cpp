@@ -7,8 +7,8 @@
 #include "libatlas/scene/reader.h"
 #include "tests/pipeline/advised.h"
 #include "tests/pipeline/lit_scene.h"
-#include "tests/scene/temp_folder.h"
 #include "tests/support/shapes.h"
+#include "tests/support/temp_folder.h"
 
 namespace atlas::test {
 namespace {

@@ -9,8 +9,8 @@
 #include "libatlas/pipeline/export_world.h"
 #include "tests/pipeline/advised.h"
 #include "tests/pipeline/lit_scene.h"
-#include "tests/scene/temp_folder.h"
 #include "tests/support/shapes.h"
+#include "tests/support/temp_folder.h"
 
 namespace atlas::test {
 namespace {

@@ -7,7 +7,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "tests/uvs/flat_mesh.h"
+#include "tests/support/flat_mesh.h"
 
 namespace atlas::test {
 namespace {

@@ -10,8 +10,8 @@
 #include "libatlas/texture/chart_textures.h"
 #include "tests/pipeline/lit_scene.h"
 #include "tests/pipeline/unwrap_checks.h"
-#include "tests/scene/temp_folder.h"
 #include "tests/support/shapes.h"
+#include "tests/support/temp_folder.h"
 
 namespace atlas::test {
 namespace {

@@ -16,8 +16,8 @@
 #include "libatlas/image/image_io.h"
 #include "libatlas/pipeline/export_world.h"
 #include "tests/pipeline/lit_scene.h"
-#include "tests/scene/temp_folder.h"
 #include "tests/support/shapes.h"
+#include "tests/support/temp_folder.h"
 
 namespace atlas::test {
 namespace {

@@ -11,11 +11,11 @@
 
 #include "libatlas/pipeline/export_world.h"
 #include "tests/pipeline/lit_scene.h"
-#include "tests/scene/gltf_maker.h"
-#include "tests/scene/temp_folder.h"
+#include "tests/support/gltf_maker.h"
 #include "tests/support/gltf_oracle.h"
 #include "tests/support/kept_scene.h"
 #include "tests/support/shapes.h"
+#include "tests/support/temp_folder.h"
 
 namespace atlas::test {
 namespace {

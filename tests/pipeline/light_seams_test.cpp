@@ -2,8 +2,8 @@
 #include <gtest/gtest.h>
 
 #include "libatlas/pipeline/export_world.h"
-#include "tests/scene/temp_folder.h"
-#include "tests/texture/lit_sheets.h"
+#include "tests/support/lit_sheets.h"
+#include "tests/support/temp_folder.h"
 
 namespace atlas::test {
 namespace {

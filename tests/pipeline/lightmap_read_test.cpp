@@ -10,7 +10,7 @@
 #include "libatlas/scene/check_scene.h"
 #include "tests/pipeline/lit_scene.h"
 #include "tests/pipeline/look_up.h"
-#include "tests/scene/temp_folder.h"
+#include "tests/support/temp_folder.h"
 
 namespace atlas::test {
 namespace {

@@ -15,10 +15,10 @@
 #include "libatlas/scene/uv_page.h"
 #include "tests/pipeline/lit_scene.h"
 #include "tests/pipeline/look_up.h"
-#include "tests/scene/gltf_maker.h"
-#include "tests/scene/temp_folder.h"
+#include "tests/support/gltf_maker.h"
 #include "tests/support/gltf_oracle.h"
 #include "tests/support/kept_scene.h"
+#include "tests/support/temp_folder.h"
 
 namespace atlas::test {
 namespace {

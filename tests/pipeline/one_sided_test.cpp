@@ -11,9 +11,9 @@
 #include "libatlas/image/image_io.h"
 #include "libatlas/pipeline/export_world.h"
 #include "tests/pipeline/lit_scene.h"
-#include "tests/scene/temp_folder.h"
-#include "tests/sheets/two_layers.h"
 #include "tests/support/gltf_oracle.h"
+#include "tests/support/temp_folder.h"
+#include "tests/support/two_layers.h"
 
 namespace atlas::test {
 namespace {

@@ -13,8 +13,8 @@
 #include "libatlas/pipeline/layout_effort.h"
 #include "libatlas/pipeline/least_room.h"
 #include "tests/pipeline/lit_scene.h"
-#include "tests/scene/temp_folder.h"
 #include "tests/support/shapes.h"
+#include "tests/support/temp_folder.h"
 
 namespace atlas::test {
 namespace {

@@ -5,9 +5,9 @@
 #include <filesystem>
 
 #include "libatlas/pipeline/export_world.h"
-#include "tests/scene/temp_folder.h"
 #include "tests/support/fidelity.h"
 #include "tests/support/shared_data.h"
+#include "tests/support/temp_folder.h"
 
 namespace atlas::test {
 namespace {

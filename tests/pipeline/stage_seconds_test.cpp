@@ -7,7 +7,7 @@
 #include "libatlas/core/clock.h"
 #include "libatlas/pipeline/export_world.h"
 #include "tests/pipeline/lit_scene.h"
-#include "tests/scene/temp_folder.h"
+#include "tests/support/temp_folder.h"
 
 namespace atlas::test {
 namespace {

@@ -13,9 +13,9 @@
 #include "libatlas/pipeline/unwrap.h"
 #include "libatlas/scene/check_scene.h"
 #include "tests/pipeline/unwrap_checks.h"
-#include "tests/scene/temp_folder.h"
 #include "tests/support/atlas_measure.h"
-#include "tests/uvs/flat_mesh.h"
+#include "tests/support/flat_mesh.h"
+#include "tests/support/temp_folder.h"
 
 namespace atlas::test {
 namespace {

@@ -10,9 +10,9 @@
 #include "libatlas/pipeline/export_world.h"
 #include "libatlas/scene/reader.h"
 #include "tests/pipeline/lit_scene.h"
-#include "tests/scene/temp_folder.h"
 #include "tests/support/atlas_measure.h"
 #include "tests/support/shapes.h"
+#include "tests/support/temp_folder.h"
 
 namespace atlas::test {
 namespace {

@@ -15,8 +15,8 @@
 #include "tests/pipeline/lit_scene.h"
 #include "tests/pipeline/unwrap_checks.h"
 #include "tests/support/atlas_measure.h"
+#include "tests/support/flat_mesh.h"
 #include "tests/support/shapes.h"
-#include "tests/uvs/flat_mesh.h"
 
 namespace atlas::test {
 namespace {

@@ -17,9 +17,9 @@
 #include "libatlas/scene/check_scene.h"
 #include "tests/pipeline/lit_scene.h"
 #include "tests/pipeline/unwrap_checks.h"
-#include "tests/scene/temp_folder.h"
 #include "tests/support/shapes.h"
 #include "tests/support/slowness.h"
+#include "tests/support/temp_folder.h"
 
 namespace atlas::test {
 namespace {

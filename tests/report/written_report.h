@@ -6,7 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "libatlas/report/export_report.h"
-#include "tests/scene/temp_folder.h"
+#include "tests/support/temp_folder.h"
 
 namespace atlas::test {
 

@@ -5,9 +5,9 @@
 
 #include "libatlas/image/image_io.h"
 #include "libatlas/scene/check_scene.h"
-#include "tests/scene/gltf_maker.h"
 #include "tests/scene/load_scene.h"
-#include "tests/scene/temp_folder.h"
+#include "tests/support/gltf_maker.h"
+#include "tests/support/temp_folder.h"
 
 namespace atlas::test {
 namespace {

@@ -8,9 +8,9 @@
 #include <set>
 
 #include "libatlas/scene/reader.h"
-#include "tests/scene/draco_gltf.h"
-#include "tests/scene/packed_gltf.h"
-#include "tests/scene/temp_folder.h"
+#include "tests/support/draco_gltf.h"
+#include "tests/support/packed_gltf.h"
+#include "tests/support/temp_folder.h"
 
 namespace atlas {
 namespace {

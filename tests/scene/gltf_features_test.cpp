@@ -6,8 +6,8 @@
 
 #include "libatlas/core/clock.h"
 #include "libatlas/scene/reader.h"
-#include "tests/scene/gltf_maker.h"
-#include "tests/scene/temp_folder.h"
+#include "tests/support/gltf_maker.h"
+#include "tests/support/temp_folder.h"
 
 namespace atlas {
 namespace {

@@ -6,8 +6,8 @@
 #include <cmath>
 
 #include "libatlas/scene/reader.h"
-#include "tests/scene/packed_gltf.h"
-#include "tests/scene/temp_folder.h"
+#include "tests/support/packed_gltf.h"
+#include "tests/support/temp_folder.h"
 
 namespace atlas {
 namespace {

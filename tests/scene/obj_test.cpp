@@ -11,8 +11,8 @@
 #include "libatlas/image/image_io.h"
 #include "libatlas/scene/reader.h"
 #include "tests/scene/load_scene.h"
-#include "tests/scene/temp_folder.h"
 #include "tests/support/shared_data.h"
+#include "tests/support/temp_folder.h"
 
 namespace atlas {
 namespace {

@@ -10,7 +10,7 @@
 #include "libatlas/core/srgb.h"
 #include "libatlas/scene/reader.h"
 #include "tests/scene/load_scene.h"
-#include "tests/scene/temp_folder.h"
+#include "tests/support/temp_folder.h"
 
 namespace atlas {
 namespace {

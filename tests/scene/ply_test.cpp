@@ -8,7 +8,7 @@
 
 #include "libatlas/scene/reader.h"
 #include "tests/scene/sound.h"
-#include "tests/scene/temp_folder.h"
+#include "tests/support/temp_folder.h"
 
 namespace atlas {
 namespace {

@@ -5,7 +5,7 @@
 #include <string>
 
 #include "tests/scene/load_scene.h"
-#include "tests/scene/temp_folder.h"
+#include "tests/support/temp_folder.h"
 
 namespace atlas::test {
 namespace {

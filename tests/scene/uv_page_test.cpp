@@ -4,8 +4,8 @@
 #include <gtest/gtest.h>
 
 #include "libatlas/scene/reader.h"
-#include "tests/scene/gltf_maker.h"
-#include "tests/scene/temp_folder.h"
+#include "tests/support/gltf_maker.h"
+#include "tests/support/temp_folder.h"
 
 namespace atlas {
 namespace {

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "libatlas/scene/reader.h"
-#include "tests/scene/temp_folder.h"
+#include "tests/support/temp_folder.h"
 
 namespace atlas::test {
 

@@ -8,8 +8,8 @@
 #include "libatlas/scene/reader.h"
 #include "tests/scene/load_scene.h"
 #include "tests/scene/sound.h"
-#include "tests/scene/temp_folder.h"
 #include "tests/scene/vrml_maker.h"
+#include "tests/support/temp_folder.h"
 
 namespace atlas {
 namespace {

@@ -5,7 +5,7 @@
 
 #include <vector>
 
-#include "tests/sheets/two_layers.h"
+#include "tests/support/two_layers.h"
 
 namespace atlas::test {
 namespace {

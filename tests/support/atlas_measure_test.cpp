@@ -13,10 +13,10 @@
 #include <fstream>
 #include <string>
 
-#include "tests/scene/temp_folder.h"
 #include "tests/support/program_output.h"
 #include "tests/support/shapes.h"
 #include "tests/support/shared_data.h"
+#include "tests/support/temp_folder.h"
 
 namespace atlas::test {
 namespace {

@@ -11,10 +11,10 @@
 #include <string>
 
 #include "libatlas/image/image_io.h"
-#include "tests/scene/temp_folder.h"
 #include "tests/support/program_output.h"
 #include "tests/support/shapes.h"
 #include "tests/support/shared_data.h"
+#include "tests/support/temp_folder.h"
 
 namespace atlas::test {
 namespace {

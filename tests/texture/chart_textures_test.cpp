@@ -6,7 +6,7 @@
 #include <atomic>
 #include <cmath>
 
-#include "tests/texture/lit_shapes.h"
+#include "tests/support/lit_shapes.h"
 
 namespace atlas {
 namespace {

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "libatlas/texture/triangle_light.h"
-#include "tests/texture/lit_shapes.h"
+#include "tests/support/lit_shapes.h"
 
 namespace atlas {
 namespace {

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <cstdint>
 
-#include "tests/texture/lit_sheets.h"
+#include "tests/support/lit_sheets.h"
 
 namespace atlas::test {
 namespace {

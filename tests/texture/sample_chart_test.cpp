@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-#include "tests/texture/lit_shapes.h"
+#include "tests/support/lit_shapes.h"
 
 namespace atlas {
 namespace {

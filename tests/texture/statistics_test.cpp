@@ -4,7 +4,7 @@
 #include <cstdint>
 
 #include "libatlas/texture/tone.h"
-#include "tests/texture/lit_shapes.h"
+#include "tests/support/lit_shapes.h"
 
 namespace atlas {
 namespace {

@@ -9,7 +9,7 @@
 
 #include "libatlas/core/glm_bridge.h"
 #include "libatlas/uvs/thin_uvs.h"
-#include "tests/uvs/flat_mesh.h"
+#include "tests/support/flat_mesh.h"
 
 namespace atlas::test {
 namespace {

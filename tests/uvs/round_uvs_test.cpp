@@ -13,7 +13,7 @@
 #include "libatlas/uvs/open_stacks.h"
 #include "libatlas/uvs/push_slivers.h"
 #include "libatlas/uvs/thin_uvs.h"
-#include "tests/uvs/flat_mesh.h"
+#include "tests/support/flat_mesh.h"
 
 namespace atlas::test {
 namespace {

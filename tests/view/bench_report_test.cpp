@@ -11,7 +11,7 @@
 
 #include "libatlas/view/bench.h"
 #include "libatlas/view/shadow_text.h"
-#include "tests/scene/temp_folder.h"
+#include "tests/support/temp_folder.h"
 
 namespace atlas {
 namespace {

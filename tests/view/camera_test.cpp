@@ -13,7 +13,7 @@
 #include "libatlas/scene/check_scene.h"
 #include "libatlas/view/camera.h"
 #include "libatlas/view/start_camera.h"
-#include "tests/exporters/boxes.h"
+#include "tests/support/boxes.h"
 #include "tests/view/shapes.h"
 
 namespace atlas::testing {

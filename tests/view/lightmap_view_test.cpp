@@ -14,7 +14,7 @@
 #include "libatlas/image/image_io.h"
 #include "libatlas/view/play.h"
 #include "libatlas/view/start_camera.h"
-#include "tests/scene/gltf_maker.h"
+#include "tests/support/gltf_maker.h"
 #include "tests/view/play_folder.h"
 #include "tests/view/shapes.h"
 

@@ -8,7 +8,7 @@
 #include "libatlas/exporters/world.h"
 #include "libatlas/image/image_io.h"
 #include "libatlas/view/play.h"
-#include "tests/scene/temp_folder.h"
+#include "tests/support/temp_folder.h"
 #include "tests/view/shapes.h"
 
 namespace atlas::testing {

@@ -6,7 +6,7 @@
 #include <filesystem>
 
 #include "libatlas/view/renderer.h"
-#include "tests/scene/temp_folder.h"
+#include "tests/support/temp_folder.h"
 
 namespace atlas::testing {
 

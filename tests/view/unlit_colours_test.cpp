@@ -10,8 +10,8 @@
 
 #include "libatlas/image/image_io.h"
 #include "libatlas/view/play.h"
-#include "tests/scene/gltf_maker.h"
-#include "tests/scene/temp_folder.h"
+#include "tests/support/gltf_maker.h"
+#include "tests/support/temp_folder.h"
 #include "tests/view/shapes.h"
 
 namespace atlas::testing {

@@ -11,7 +11,7 @@
 #include <string>
 #include <thread>
 
-#include "tests/scene/temp_folder.h"
+#include "tests/support/temp_folder.h"
 
 namespace atlas {
 namespace {

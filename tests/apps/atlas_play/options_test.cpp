@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "apps/atlas-play/command_line.h"
-#include "tests/scene/temp_folder.h"
+#include "tests/support/temp_folder.h"
 
 namespace atlas::test {
 namespace {

@@ -12,7 +12,7 @@
 #include <thread>
 #include <utility>
 
-#include "tests/scene/temp_folder.h"
+#include "tests/support/temp_folder.h"
 
 namespace atlas::app {
 namespace {

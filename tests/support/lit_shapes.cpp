@@ -1,4 +1,4 @@
-#include "tests/texture/lit_shapes.h"
+#include "tests/support/lit_shapes.h"
 
 #include <random>
 

@@ -9,7 +9,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "tests/scene/gltf_maker.h"
+#include "tests/support/gltf_maker.h"
 
 namespace atlas::test {
 

@@ -1,4 +1,4 @@
-#include "tests/pack/checks.h"
+#include "tests/support/layout_checks.h"
 
 #include <algorithm>
 #include <cmath>

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "tests/scene/gltf_maker.h"
+#include "tests/support/gltf_maker.h"
 
 namespace atlas::test {
 
