@@ -255,7 +255,8 @@ TEST(KeptGltf, ANodeAboveTurnsOrScales) {
   }
 }
 
-// Root nodes of a scene have no parent, in no scene (glTF 2.0, 3.5.2).
+// What a scene lists must be root nodes (glTF 2.0, 3.5), and the shown scene gets a node above
+// them.
 TEST(KeptGltf, ANodeBelowAnotherIsNoRootOfOtherScenes) {
   const TempFolder folder;
   Gltf gltf = textured(folder);

@@ -10,6 +10,7 @@
 #include "libatlas/exporters/gltf_kept/gltf_kept_meshes.h"
 #include "libatlas/scene/gltf/gltf_check.h"
 #include "libatlas/scene/gltf/gltf_instances.h"
+#include "libatlas/scene/gltf/gltf_sizes.h"
 #include "libatlas/scene/scene.h"
 
 namespace atlas {
@@ -147,18 +148,15 @@ Roots divide_roots(const GltfSource& source, const json& nodes, const json& root
   return result;
 }
 
-std::size_t shown_scene(const GltfSource& source) {
-  return source.model.defaultScene >= 0 ? std::size_t(source.model.defaultScene) : 0;
-}
-
 // Takes nodes that are below another one now out of the lists of root nodes that scenes have, since
 // glTF allows only root nodes there. Those of the scene that readers show are set afterwards.
 void leave_out_of_scenes(const GltfSource& source, const json& moved, json& document,
                          Losses& losses) {
   const std::set<json> below(moved.begin(), moved.end());
+  const std::size_t shown = gltf_shown_scene(source.model);
   for (std::size_t scene = 0; scene < source.model.scenes.size(); ++scene) {
     json* roots = member_at(&document["scenes"][scene], "nodes");
-    if (scene == shown_scene(source) || roots == nullptr || !roots->is_array()) continue;
+    if (scene == shown || roots == nullptr || !roots->is_array()) continue;
     json left = json::array();
     for (const json& root : *roots)
       if (!below.contains(root)) left.push_back(root);
@@ -175,7 +173,7 @@ void leave_out_of_scenes(const GltfSource& source, const json& moved, json& docu
 void set_roots(const GltfSource& source, json roots, json& document) {
   json& scenes = document["scenes"];
   if (!scenes.is_array()) scenes = json::array();
-  std::size_t shown = shown_scene(source);
+  std::size_t shown = gltf_shown_scene(source.model);
   if (shown >= scenes.size()) {
     shown = scenes.size();
     scenes.push_back(json::object());

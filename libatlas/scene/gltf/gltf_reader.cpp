@@ -1,7 +1,6 @@
 // Reads glTF 2.0: merges the nodes of a scene into one mesh in world coordinates.
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <glm/mat4x4.hpp>
 
 #include "libatlas/core/glm_bridge.h"
@@ -66,10 +65,10 @@ class GltfParser {
   }
 
   Status nothing_shown() const {
-    const std::string why =
-        model_.meshes.empty() ? "it holds no mesh"
-                              : fmt::format("scene {} shows none of its {} meshes",
-                                            std::max(0, model_.defaultScene), model_.meshes.size());
+    const std::string why = model_.meshes.empty()
+                                ? "it holds no mesh"
+                                : fmt::format("scene {} shows none of its {} meshes",
+                                              gltf_shown_scene(model_), model_.meshes.size());
     return {ErrorCode::bad_input,
             fmt::format("{}: no triangle to work on: {} (export the scene as a triangle mesh)",
                         builder_.file, why)};

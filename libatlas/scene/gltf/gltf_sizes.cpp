@@ -94,9 +94,13 @@ bool gltf_hidden(const tinygltf::Node& node) {
   return visible.IsBool() && !visible.Get<bool>();
 }
 
+std::size_t gltf_shown_scene(const tinygltf::Model& model) {
+  return model.defaultScene >= 0 ? std::size_t(model.defaultScene) : 0;
+}
+
 std::vector<int> gltf_roots(const tinygltf::Model& model) {
-  const int chosen = model.defaultScene >= 0 ? model.defaultScene : 0;
-  if (std::size_t(chosen) < model.scenes.size()) return model.scenes[std::size_t(chosen)].nodes;
+  const std::size_t shown = gltf_shown_scene(model);
+  if (shown < model.scenes.size()) return model.scenes[shown].nodes;
   std::vector<bool> child(model.nodes.size(), false);
   for (const tinygltf::Node& node : model.nodes)
     for (const int c : node.children)

@@ -1,6 +1,7 @@
 // Internal: finds what a glTF file shows, and how much that is, before its data are read.
 #pragma once
 
+#include <cstddef>
 #include <span>
 #include <vector>
 
@@ -11,8 +12,11 @@ namespace atlas {
 // Returns whether KHR_node_visibility hides the node, and with it all nodes below it.
 bool gltf_hidden(const tinygltf::Node& node);
 
-// Returns the root nodes of the default scene, or of the first; without scenes, all nodes without a
-// parent.
+// Returns the number of the scene that is shown: the default scene, or the first. The file may have
+// fewer scenes.
+std::size_t gltf_shown_scene(const tinygltf::Model& model);
+
+// Returns the root nodes of the scene that is shown; without scenes, all nodes without a parent.
 std::vector<int> gltf_roots(const tinygltf::Model& model);
 
 // Returns the sum of vertices and triangle corners of all meshes, each counted as often as `roots`
