@@ -5,7 +5,7 @@
 // that were compiled with an earlier header keep working, and so do those compiled with a later one
 // as long as they do not use what is new. What is passed in gets its size and its defaults from the
 // function with its name and _init, as in libatlas_mesh_init(&mesh, sizeof mesh). What is handed
-// out only needs the size: libatlas_mesh_uvs uvs = {sizeof uvs}. The structs of int32_t alone stay
+// out only needs the size: uvs.size = sizeof uvs. The structs of int32_t alone stay
 // as they are.
 //
 // Errors: calls that can fail return a status. They change nothing then, and write null or 0 to

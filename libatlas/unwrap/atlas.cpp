@@ -119,6 +119,7 @@ StridedMesh strided(const MeshView& mesh) {
       .materials = mesh.materials,
       .density = mesh.density,
       .seams = mesh.seams,
+      .objects = mesh.objects,
   };
 }
 
