@@ -51,6 +51,9 @@ Status check_input(const MeshView& mesh) {
   if (!mesh.seams.empty() && mesh.seams.size() != n) {
     return {ErrorCode::bad_input, "mesh: seams must be empty or 3 a triangle"};
   }
+  if (!mesh.objects.empty() && mesh.objects.size() != mesh.positions.size()) {
+    return {ErrorCode::bad_input, "mesh: objects must be empty or 1 a position"};
+  }
   if (!mesh.density.empty() && mesh.density.size() != n / 3) {
     return {ErrorCode::bad_input, "mesh: densities must be empty or 1 a triangle"};
   }
@@ -312,7 +315,7 @@ Result<Topology> build_topology(const MeshView& mesh, const TopologyOptions& opt
   {
     const std::vector<std::uint8_t> used = used_vertices(mesh.indices, mesh.positions.size());
     if (Status status = check_positions(mesh, used); !status.ok()) return status;
-    take_vertices(mesh, weld_vertices(mesh.positions, used), topology);
+    take_vertices(mesh, weld_vertices(mesh.positions, used, mesh.objects), topology);
   }
   // Given charts are kept whatever the normals are.
   std::vector<std::uint32_t> thin = measure_triangles(topology, !options.cut_at_uv_seams);
