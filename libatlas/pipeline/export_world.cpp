@@ -12,6 +12,7 @@
 #include "libatlas/core/clock.h"
 #include "libatlas/core/parallel.h"
 #include "libatlas/core/progress.h"
+#include "libatlas/core/srgb.h"
 #include "libatlas/image/image_io.h"
 #include "libatlas/pipeline/advice.h"
 #include "libatlas/pipeline/assemble_world.h"
@@ -163,8 +164,11 @@ class Export {
     report_.luminance = *statistics;
     report_.tone = tone_;
     report_.exposure_white = double(tone_.white) / tone_.scale;
-    record_.finish({scene_.triangle_count(), 1, "tone curve",
-                    fmt::format("white {:.4g}", report_.exposure_white)});
+    const auto median = static_cast<float>(report_.luminance.median);
+    record_.finish(
+        {scene_.triangle_count(), 1, "tone curve",
+         fmt::format("white {:.4g}, the median {:.4g} shown as {} of 255", report_.exposure_white,
+                     median, quantize8(tone_.display({median, median, median}).y))});
     return {};
   }
 
