@@ -6,10 +6,10 @@
 #include <bit>
 #include <cmath>
 
-#include "libatlas/bake/placement.h"
 #include "libatlas/core/file_extension.h"
 #include "libatlas/exporters/world.h"
 #include "libatlas/image/webp.h"
+#include "libatlas/uvs/placement.h"
 
 namespace atlas {
 namespace {

@@ -4,8 +4,8 @@
 #include "libatlas/charts/charts.h"
 #include "libatlas/core/image.h"
 #include "libatlas/exporters/world.h"
-#include "libatlas/pipeline/page_layout.h"
 #include "libatlas/scene/scene.h"
+#include "libatlas/unwrap/page_layout.h"
 
 namespace atlas {
 
