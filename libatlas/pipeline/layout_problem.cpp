@@ -72,9 +72,9 @@ ChartOutlines::ChartOutlines(const ChartSet& set, std::span<const Vec2d> density
       corners[i] = {set.uvs[i].x * density[c].x, set.uvs[i].y * density[c].y};
     }
     for (const std::size_t t : triangles_of(set, chart)) {
-      for (int k = 0; k < 3; ++k) {
-        triangles.push_back(set.triangle_uv[3 * t + k] - chart.first_uv);
-      }
+      const std::uint32_t* const uvs = &set.triangle_uv[3 * t];
+      for (const std::uint32_t uv : from_lowest({uvs[0], uvs[1], uvs[2]}))
+        triangles.push_back(uv - chart.first_uv);
     }
   }
   for (const Chart& chart : set.charts) {
