@@ -1,7 +1,7 @@
 #include "benchmarks/support/staged.h"
 
-#include "libatlas/bake/placement.h"
 #include "libatlas/pipeline/plan.h"
+#include "libatlas/uvs/placement.h"
 
 namespace atlas::bench {
 

@@ -16,21 +16,22 @@
 #include "libatlas/pipeline/advice.h"
 #include "libatlas/pipeline/assemble_world.h"
 #include "libatlas/pipeline/bake_pages.h"
-#include "libatlas/pipeline/fill_pages.h"
 #include "libatlas/pipeline/layout_options.h"
 #include "libatlas/pipeline/longest_sides.h"
 #include "libatlas/pipeline/more_mip_levels.h"
-#include "libatlas/pipeline/page_layout.h"
-#include "libatlas/pipeline/part_gaps.h"
 #include "libatlas/pipeline/size_textures.h"
 #include "libatlas/pipeline/stage_recorder.h"
 #include "libatlas/pipeline/suit_pages.h"
+#include "libatlas/pipeline/texture_gaps.h"
 #include "libatlas/pipeline/write_export.h"
 #include "libatlas/scene/check_scene.h"
 #include "libatlas/scene/uv_page.h"
 #include "libatlas/simplify/simplify.h"
 #include "libatlas/texture/chart_textures.h"
 #include "libatlas/texture/light_seams.h"
+#include "libatlas/unwrap/fill_pages.h"
+#include "libatlas/unwrap/page_layout.h"
+#include "libatlas/unwrap/part_gaps.h"
 
 namespace atlas {
 namespace {
@@ -194,9 +195,9 @@ class Export {
     sizing_ = sized->sizing;
     TextureResult& textures = sized->textures;
     const PagesOfCharts pages{view_of(scene_), options_.charts.max_stretch,
-                              double(options_.atlases) * options_.atlas_size * options_.atlas_size,
-                              texture.max_side};
-    report_.opened_charts = open_part_gaps(pages, textures.charts, charts_, context).charts;
+                              double(options_.atlases) * options_.atlas_size * options_.atlas_size};
+    const TexturesOfCharts opened{textures.charts, texture.max_side};
+    report_.opened_charts = open_texture_gaps(pages, opened, charts_, context).charts;
     if (context.cancelled()) return Status::cancelled();
     report_charts();
     for (const ChartTexture& t : textures.charts) {

@@ -9,7 +9,7 @@
 
 #include "libatlas/charts/tiles.h"
 #include "libatlas/pack/fit.h"
-#include "libatlas/pipeline/layout_problem.h"
+#include "libatlas/unwrap/layout_problem.h"
 
 namespace atlas {
 namespace {

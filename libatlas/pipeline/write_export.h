@@ -9,13 +9,13 @@
 #include "libatlas/core/context.h"
 #include "libatlas/core/status.h"
 #include "libatlas/pipeline/export_options.h"
-#include "libatlas/pipeline/page_layout.h"
 #include "libatlas/pipeline/stage_recorder.h"
 #include "libatlas/report/export_report.h"
 #include "libatlas/scene/reader.h"
 #include "libatlas/scene/scene.h"
 #include "libatlas/simplify/simplify.h"
 #include "libatlas/texture/luminance.h"
+#include "libatlas/unwrap/page_layout.h"
 
 namespace atlas {
 

@@ -4,10 +4,10 @@
 #include <span>
 #include <vector>
 
-#include "libatlas/bake/placement.h"
 #include "libatlas/charts/charts.h"
 #include "libatlas/core/vec.h"
 #include "libatlas/pack/pack.h"
+#include "libatlas/uvs/placement.h"
 
 namespace atlas {
 

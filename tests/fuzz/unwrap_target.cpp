@@ -1,7 +1,7 @@
 #include <cmath>
 #include <vector>
 
-#include "libatlas/pipeline/unwrap.h"
+#include "libatlas/unwrap/unwrap.h"
 #include "tests/fuzz/targets.h"
 #include "tests/support/atlas_measure.h"
 

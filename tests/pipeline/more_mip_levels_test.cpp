@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "tests/pipeline/shape_view.h"
+#include "tests/support/shape_view.h"
 
 namespace atlas::test {
 namespace {

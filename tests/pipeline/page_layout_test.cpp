@@ -1,5 +1,5 @@
 // Pages of plain uvs: how large and how full they are.
-#include "libatlas/pipeline/page_layout.h"
+#include "libatlas/unwrap/page_layout.h"
 
 #include <gtest/gtest.h>
 
@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "libatlas/pipeline/export_world.h"
-#include "libatlas/pipeline/layout_effort.h"
-#include "libatlas/pipeline/least_room.h"
+#include "libatlas/unwrap/layout_effort.h"
+#include "libatlas/unwrap/least_room.h"
 #include "tests/pipeline/lit_scene.h"
 #include "tests/support/shapes.h"
 #include "tests/support/temp_folder.h"

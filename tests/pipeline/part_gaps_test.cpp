@@ -6,10 +6,11 @@
 
 #include "libatlas/bake/bake.h"
 #include "libatlas/core/srgb.h"
-#include "libatlas/pipeline/page_layout.h"
-#include "libatlas/pipeline/part_gaps.h"
+#include "libatlas/pipeline/texture_gaps.h"
 #include "libatlas/scene/check_scene.h"
 #include "libatlas/texture/chart_textures.h"
+#include "libatlas/unwrap/page_layout.h"
+#include "libatlas/unwrap/part_gaps.h"
 #include "tests/support/shapes.h"
 
 namespace atlas::test {
@@ -54,7 +55,7 @@ struct Stair {
     charts.charts[0].kept = false;
   }
 
-  PagesOfCharts pages() const { return {view, 1.25, double(kPage) * kPage, kPage}; }
+  PagesOfCharts pages() const { return {view, 1.25, double(kPage) * kPage}; }
 };
 
 double look_up(const Image8& page, Vec2d at) {
@@ -115,13 +116,11 @@ TEST(PartGaps, OneColourStaysAndNoChartOutgrowsItsPage) {
   std::vector<ChartTexture> textures(1);
   textures[0].texels_per_unit = {kDensity, kDensity};
   textures[0].content = ChartContent::uniform;
-  EXPECT_EQ(open_part_gaps(stair.pages(), textures, stair.charts, {}).charts, 0u);
+  EXPECT_EQ(open_texture_gaps(stair.pages(), {textures, kPage}, stair.charts, {}).charts, 0u);
   textures[0].content = ChartContent::varied;
-  PagesOfCharts pages = stair.pages();
-  pages.max_side = int(stair.charts.charts[0].size.x * kDensity) - 1;
-  EXPECT_EQ(open_part_gaps(pages, textures, stair.charts, {}).charts, 1u);
-  EXPECT_LE(stair.charts.charts[0].size.x * textures[0].texels_per_unit.x,
-            pages.max_side * (1 + 1e-12));
+  const int max_side = int(stair.charts.charts[0].size.x * kDensity) - 1;
+  EXPECT_EQ(open_texture_gaps(stair.pages(), {textures, max_side}, stair.charts, {}).charts, 1u);
+  EXPECT_LE(stair.charts.charts[0].size.x * textures[0].texels_per_unit.x, max_side * (1 + 1e-12));
   EXPECT_GT(textures[0].texels_per_unit.x, 0.9 * kDensity);
   EXPECT_EQ(textures[0].texels_per_unit.x, textures[0].texels_per_unit.y);
 }
@@ -196,12 +195,10 @@ TEST(PartGaps, OnlyOpenedChartsThatOutgrowTheirPageGetFewerTexels) {
   Stair stair;
   const Vec2d steep{kDensity, 4 * kDensity};  // longer along v than along u
   std::vector<ChartTexture> textures(1);
-  PagesOfCharts pages = stair.pages();
   const auto opened = [&](ChartContent content, std::int32_t max_side) {
     textures[0].texels_per_unit = steep;
     textures[0].content = content;
-    pages.max_side = max_side;
-    open_part_gaps(pages, textures, stair.charts, {});
+    open_texture_gaps(stair.pages(), {textures, max_side}, stair.charts, {});
     return textures[0].texels_per_unit;
   };
   EXPECT_EQ(opened(ChartContent::varied, 10000), steep);

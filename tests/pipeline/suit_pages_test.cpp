@@ -6,7 +6,7 @@
 #include <cstddef>
 #include <utility>
 
-#include "tests/pipeline/shape_view.h"
+#include "tests/support/shape_view.h"
 
 namespace atlas::test {
 namespace {

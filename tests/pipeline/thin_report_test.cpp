@@ -10,8 +10,8 @@
 
 #include "libatlas/pipeline/assemble_world.h"
 #include "libatlas/pipeline/export_world.h"
-#include "libatlas/pipeline/unwrap.h"
 #include "libatlas/scene/check_scene.h"
+#include "libatlas/unwrap/unwrap.h"
 #include "tests/pipeline/unwrap_checks.h"
 #include "tests/support/atlas_measure.h"
 #include "tests/support/flat_mesh.h"

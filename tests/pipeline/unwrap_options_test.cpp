@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "libatlas/bake/bake.h"
-#include "libatlas/pipeline/unwrap.h"
+#include "libatlas/unwrap/unwrap.h"
 #include "tests/pipeline/lit_scene.h"
 #include "tests/pipeline/unwrap_checks.h"
 #include "tests/support/atlas_measure.h"

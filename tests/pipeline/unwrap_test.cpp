@@ -1,5 +1,5 @@
 // unwrap_mesh loses nothing, vertices keep what they are copies of, and uvs flip no triangle.
-#include "libatlas/pipeline/unwrap.h"
+#include "libatlas/unwrap/unwrap.h"
 
 #include <gtest/gtest.h>
 
@@ -13,8 +13,8 @@
 
 #include "libatlas/core/clock.h"
 #include "libatlas/pipeline/export_world.h"
-#include "libatlas/pipeline/part_gaps.h"
 #include "libatlas/scene/check_scene.h"
+#include "libatlas/unwrap/part_gaps.h"
 #include "tests/pipeline/lit_scene.h"
 #include "tests/pipeline/unwrap_checks.h"
 #include "tests/support/shapes.h"

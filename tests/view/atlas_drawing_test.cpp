@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "libatlas/pipeline/unwrap.h"
+#include "libatlas/unwrap/unwrap.h"
 #include "libatlas/view/gl_objects.h"
 #include "tests/support/shapes.h"
 #include "tests/view/shapes.h"

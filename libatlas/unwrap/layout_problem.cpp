@@ -1,4 +1,4 @@
-#include "libatlas/pipeline/layout_problem.h"
+#include "libatlas/unwrap/layout_problem.h"
 
 #include <algorithm>
 #include <cmath>

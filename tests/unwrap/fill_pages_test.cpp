@@ -7,8 +7,8 @@
 #include <utility>
 
 #include "libatlas/core/clock.h"
-#include "libatlas/pipeline/unwrap.h"
-#include "tests/pipeline/shape_view.h"
+#include "libatlas/unwrap/unwrap.h"
+#include "tests/support/shape_view.h"
 #include "tests/support/slowness.h"
 
 namespace atlas::test {

@@ -1,4 +1,4 @@
-#include "libatlas/pipeline/unwrap.h"
+#include "libatlas/unwrap/unwrap.h"
 
 #include <fmt/format.h>
 
@@ -12,8 +12,8 @@
 
 #include "libatlas/core/no_index.h"
 #include "libatlas/pipeline/assemble_world.h"
-#include "libatlas/pipeline/fill_pages.h"
-#include "libatlas/pipeline/part_gaps.h"
+#include "libatlas/unwrap/fill_pages.h"
+#include "libatlas/unwrap/part_gaps.h"
 #include "libatlas/uvs/draw_once.h"
 #include "libatlas/uvs/page_uvs.h"
 #include "libatlas/uvs/round_uvs.h"

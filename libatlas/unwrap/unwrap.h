@@ -5,12 +5,12 @@
 #include <cstdint>
 #include <vector>
 
-#include "libatlas/bake/placement.h"
 #include "libatlas/charts/charts.h"
 #include "libatlas/charts/gaps.h"
 #include "libatlas/core/context.h"
 #include "libatlas/core/status.h"
 #include "libatlas/pack/pack.h"
+#include "libatlas/uvs/placement.h"
 
 namespace atlas {
 

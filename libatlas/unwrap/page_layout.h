@@ -6,12 +6,12 @@
 #include <string>
 #include <vector>
 
-#include "libatlas/bake/placement.h"
 #include "libatlas/charts/charts.h"
 #include "libatlas/core/context.h"
 #include "libatlas/core/status.h"
 #include "libatlas/pack/grouping.h"
 #include "libatlas/pack/pack.h"
+#include "libatlas/uvs/placement.h"
 
 namespace atlas {
 
