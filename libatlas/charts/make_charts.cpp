@@ -343,7 +343,7 @@ Result<ChartSet> make_charts(const MeshView& mesh, const ChartOptions& options,
   given.texcoord_indices = canonical.texcoord_indices;
   given.seams = canonical.seams;
   Result<Topology> built = build_topology(
-      {given, std::move(canonical.places)},
+      {given, std::move(canonical.places), std::move(canonical.opposite)},
       {options.split_at_materials, options.keep_uv_charts, uv_aspects(options)}, context);
   if (!built.ok()) return built.status();
   const Topology& topology = *built;

@@ -7,45 +7,17 @@
 #include <cstdint>
 #include <utility>
 
+#include "libatlas/core/exact_terms.h"
+
 namespace atlas {
 namespace {
-
-// A sum of two doubles that is exact: the rounded value, and what rounding took.
-struct Exact {
-  double high, low;
-};
-
-// The rounding errors of sums, differences and products are doubles themselves (Shewchuk 1997,
-// section 2, after Dekker 1971 and Knuth), which a few more operations find. The products must
-// neither overflow nor underflow.
-Exact exact_sum(double a, double b) {
-  const double sum = a + b, b_part = sum - a, a_part = sum - b_part;
-  return {sum, (a - a_part) + (b - b_part)};
-}
-
-Exact exact_difference(double a, double b) {
-  return exact_sum(a, -b);
-}
-
-// Returns the upper 26 bits of a number, and the rest.
-Exact halves(double a) {
-  const double shifted = 0x1.0000002p27 * a, high = shifted - (shifted - a);
-  return {high, a - high};
-}
-
-Exact exact_product(double a, double b) {
-  const double product = a * b;
-  const Exact p = halves(a), q = halves(b);
-  const double rest = p.high * q.high - product + p.high * q.low + p.low * q.high;
-  return {product, rest + p.low * q.low};
-}
 
 int sign_of(double x) {
   return (x > 0) - (x < 0);
 }
 
-// A sum of doubles, kept as terms that do not overlap, in the order of their size. The sign is
-// therefore that of the last term that is not 0.
+// A sum of doubles, kept as terms that do not overlap, in the order of their size (Shewchuk 1997,
+// section 2.3). The sign is therefore that of the last term that is not 0.
 class Expansion {
  public:
   void add(double x) {
@@ -93,9 +65,9 @@ int sign_by_expansions(Vec2d a, Vec2d b, Vec2d c) {
   sum.add_product(bx.high, cy.high);
   sum.add_product(-by.high, cx.high);
   if (bx.low == 0 && by.low == 0 && cx.low == 0 && cy.low == 0) return sum.sign();
-  for (const auto& [p, q] : {std::pair{bx.high, cy.low}, std::pair{bx.low, cy.high},
-                             std::pair{bx.low, cy.low}, std::pair{-by.high, cx.low},
-                             std::pair{-by.low, cx.high}, std::pair{-by.low, cx.low}})
+  for (const auto& [p, q] :
+       {std::pair{bx.high, cy.low}, std::pair{bx.low, cy.high}, std::pair{bx.low, cy.low},
+        std::pair{-by.high, cx.low}, std::pair{-by.low, cx.high}, std::pair{-by.low, cx.low}})
     sum.add_product(p, q);
   return sum.sign();
 }

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "libatlas/charts/chart_triangles.h"
+#include "libatlas/core/portable_math.h"
 
 namespace atlas {
 namespace {
@@ -35,8 +36,8 @@ ChartPlacement outlined(const FitPlacement& from, const LayoutOptions& options) 
   ChartPlacement to;
   to.outlined = true;
   to.offset = from.offset;
-  to.cosine = std::cos(from.angle);
-  to.sine = std::sin(from.angle);
+  to.cosine = portable::cos(from.angle);
+  to.sine = portable::sin(from.angle);
   to.x = from.box.x + options.padding;
   to.y = from.box.y + options.padding;
   to.width = from.box.width - 2 * options.padding;

@@ -5,16 +5,18 @@
 #include <bit>
 #include <utility>
 
-#include "libatlas/charts/mesh/weld.h"
+#include "libatlas/charts/mesh/pair_links.h"
 #include "libatlas/core/counting_sort.h"
 #include "libatlas/core/first_index.h"
 #include "libatlas/core/half_edge.h"
+#include "libatlas/core/sort_total.h"
 
 namespace atlas {
 namespace {
 
-// Half-edges are told apart by so many classes, by the numbers of triangles at the three corners.
-constexpr std::size_t kClasses = 4096;
+// Half-edges are told apart by up to so many classes, by the numbers of triangles at the three
+// corners.
+constexpr std::size_t kMostClasses = 4096;
 // How many triangles around a half-edge are compared first; each round compares kWider times as
 // many.
 constexpr std::size_t kFirstRound = 16, kWider = 4;
@@ -35,38 +37,12 @@ struct WalkedPiece {
   std::uint64_t size = 0;  // rounded down to a sixteenth of a power of two, as an increasing number
 };
 
-// Returns the opposite half-edges across edges that exactly two triangles share; else kNoIndex.
-std::vector<std::uint32_t> pair_links(const std::vector<std::uint32_t>& corners,
-                                      std::size_t places) {
-  const auto ends = [&](std::size_t h) {
-    return std::minmax(corners[h], corners[next_half_edge(std::uint32_t(h))]);
-  };
-  const Buckets at =
-      sort_into_buckets(corners.size(), places, [&](std::size_t h) { return ends(h).first; });
-  std::vector<std::uint32_t> opposite(corners.size(), kNoIndex);
-  std::vector<std::pair<std::uint32_t, std::uint32_t>> edges;  // upper end, half-edge
-  for (std::size_t v = 0; v < places; ++v) {
-    edges.clear();
-    for (const std::uint32_t h : at[v]) edges.emplace_back(ends(h).second, h);
-    std::sort(edges.begin(), edges.end());
-    for (std::size_t i = 0, j = 0; i < edges.size(); i = j) {
-      while (j < edges.size() && edges[j].first == edges[i].first) ++j;
-      if (j - i != 2 || edges[i].second / 3 == edges[i + 1].second / 3) continue;
-      opposite[edges[i].second] = edges[i + 1].second;
-      opposite[edges[i + 1].second] = edges[i].second;
-    }
-  }
-  return opposite;
-}
-
 class Walker {
  public:
+  // `corners` has places, and `opposite` is what pair_links() finds for them.
   Walker(const MeshView& mesh, const std::vector<Vec3f>& points,
-         const std::vector<std::uint32_t>& corners)
-      : mesh_(mesh),
-        points_(points),
-        corners_(corners),
-        opposite_(pair_links(corners, points.size())) {
+         const std::vector<std::uint32_t>& corners, const std::vector<std::uint32_t>& opposite)
+      : mesh_(mesh), points_(points), corners_(corners), opposite_(opposite) {
     count_classes();
   }
 
@@ -81,7 +57,7 @@ class Walker {
     if (order.size() == n) return order;
     order.clear();
     std::vector<WalkedPiece> pieces = find_pieces();
-    std::sort(pieces.begin(), pieces.end(), [&](const WalkedPiece& a, const WalkedPiece& b) {
+    sort_total(pieces.begin(), pieces.end(), [&](const WalkedPiece& a, const WalkedPiece& b) {
       if (a.triangles != b.triangles) return a.triangles > b.triangles;
       if (a.joints != b.joints) return a.joints < b.joints;
       return a.size != b.size ? a.size > b.size : before(a.root, b.root);
@@ -96,21 +72,22 @@ class Walker {
   void count_classes() {
     valence_.assign(points_.size(), 0);
     for (const std::uint32_t v : corners_) ++valence_[v];
-    std::vector<std::uint32_t> count(kClasses, 0);
+    const std::size_t classes = std::min(kMostClasses, std::bit_ceil(corners_.size()));
+    std::vector<std::uint32_t> count(classes, 0);
     class_.resize(corners_.size());
     for (std::uint32_t h = 0; h < corners_.size(); ++h) {
       const std::array<std::uint32_t, 3> around{valence(h), valence(next_half_edge(h)),
                                                 valence(previous_half_edge(h))};
-      class_[h] = std::uint16_t(hash_words(around) % kClasses);
+      class_[h] = std::uint16_t(hash_words(around) % classes);
       ++count[class_[h]];
     }
     // From here on, classes are numbered from the rarest on.
-    std::vector<std::uint16_t> by_count(kClasses), rank(kClasses);
-    for (std::size_t c = 0; c < kClasses; ++c) by_count[c] = std::uint16_t(c);
-    std::sort(by_count.begin(), by_count.end(), [&](std::uint16_t a, std::uint16_t b) {
+    std::vector<std::uint16_t> by_count(classes), rank(classes);
+    for (std::size_t c = 0; c < classes; ++c) by_count[c] = std::uint16_t(c);
+    sort_total(by_count.begin(), by_count.end(), [&](std::uint16_t a, std::uint16_t b) {
       return count[a] != count[b] ? count[a] < count[b] : a < b;
     });
-    for (std::size_t i = 0; i < kClasses; ++i) rank[by_count[i]] = std::uint16_t(i);
+    for (std::size_t i = 0; i < classes; ++i) rank[by_count[i]] = std::uint16_t(i);
     for (std::uint16_t& c : class_) c = rank[c];
   }
 
@@ -165,7 +142,7 @@ class Walker {
   // Returns the half-edge, of `count` that half_edge(i) gives, where the walk is to begin.
   template <class HalfEdge>
   std::uint32_t root_of(std::size_t count, const HalfEdge& half_edge) {
-    std::uint16_t rarest = kClasses;
+    std::uint16_t rarest = kMostClasses;
     std::vector<std::uint32_t>& left = candidates_;
     for (std::size_t i = 0; i < count; ++i) {
       const std::uint32_t h = half_edge(i);
@@ -251,7 +228,8 @@ class Walker {
       g = next_half_edge(g);
       h = next_half_edge(h);
     }
-    return attributes(g) < attributes(h);
+    const auto a = attributes(g), b = attributes(h);
+    return a != b ? a < b : g < h;
   }
 
   std::array<double, 11> attributes(std::uint32_t h) const {
@@ -274,10 +252,10 @@ class Walker {
 
   const MeshView& mesh_;
   const std::vector<Vec3f>& points_;
-  const std::vector<std::uint32_t>& corners_;  // places, three a triangle
-  std::vector<std::uint32_t> opposite_;        // one per half-edge: across edges of two triangles
-  std::vector<std::uint32_t> valence_;         // one per place: how many corners lie there
-  std::vector<std::uint16_t> class_;           // one per half-edge; low numbers are rare
+  const std::vector<std::uint32_t>& corners_;
+  const std::vector<std::uint32_t>& opposite_;
+  std::vector<std::uint32_t> valence_;  // one per place: how many corners lie there
+  std::vector<std::uint16_t> class_;    // one per half-edge; low numbers are rare
   // One per triangle: its number among all that were seen so far, one for each walk over it.
   std::vector<std::uint32_t> seen_;
   std::uint32_t last_seen_ = 0;
@@ -304,6 +282,24 @@ std::vector<T> per_corner(std::span<const T> input, const CanonicalMesh& mesh) {
   return values;
 }
 
+// Returns the links of the mesh from those of the input.
+std::vector<std::uint32_t> renumbered(const std::vector<std::uint32_t>& opposite,
+                                      const CanonicalMesh& mesh) {
+  // One per input triangle: the number here of the corner that is the input's first.
+  std::vector<std::uint32_t> number(mesh.first_corner.size());
+  for (std::uint32_t t = 0; t < number.size(); ++t) {
+    const std::uint32_t first = mesh.first_corner[t];
+    number[first / 3] = 3 * t + (3 - first % 3) % 3;
+  }
+  std::vector<std::uint32_t> links = per_corner(std::span(opposite), mesh);
+  for (std::uint32_t& o : links) {
+    if (o == kNoIndex) continue;
+    const std::uint32_t corner = number[o / 3];
+    o = corner - corner % 3 + (corner % 3 + o % 3) % 3;
+  }
+  return links;
+}
+
 // Numbers places in the order in which triangles name them.
 void number_places(const WeldedVertices& welded, CanonicalMesh& mesh) {
   std::vector<std::uint32_t> number(welded.points.size(), kNoIndex);
@@ -326,8 +322,10 @@ void number_places(const WeldedVertices& welded, CanonicalMesh& mesh) {
 CanonicalMesh canonical_mesh(const MeshView& input, const WeldedVertices& welded) {
   std::vector<std::uint32_t> corners(input.indices.size());
   for (std::size_t i = 0; i < corners.size(); ++i) corners[i] = welded.place[input.indices[i]];
+  const std::vector<std::uint32_t> opposite = pair_links(corners, welded.points.size());
   CanonicalMesh mesh;
-  mesh.first_corner = Walker(input, welded.points, corners).run();
+  mesh.first_corner = Walker(input, welded.points, corners, opposite).run();
+  mesh.opposite = renumbered(opposite, mesh);
   mesh.indices = per_corner(std::span<const std::uint32_t>(corners), mesh);
   number_places(welded, mesh);
   mesh.materials = per_triangle(input.materials, mesh);

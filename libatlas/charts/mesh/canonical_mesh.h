@@ -16,6 +16,7 @@ struct CanonicalMesh {
   std::vector<std::uint32_t> first_corner;  // one per triangle: its first corner in the input
   WeldedVertices places;                    // in the order in which triangles name them
   std::vector<std::uint32_t> indices;       // of places
+  std::vector<std::uint32_t> opposite;      // one per corner, see pair_links()
   std::vector<std::uint32_t> materials, texcoord_indices;
   std::vector<float> density;
   std::vector<std::uint8_t> seams;

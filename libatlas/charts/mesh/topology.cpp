@@ -8,6 +8,7 @@
 
 #include "libatlas/charts/mesh/links.h"
 #include "libatlas/charts/mesh/noise.h"
+#include "libatlas/charts/mesh/pair_links.h"
 #include "libatlas/charts/mesh/thin.h"
 #include "libatlas/charts/mesh/welded_mesh.h"
 #include "libatlas/core/clock.h"
@@ -317,7 +318,10 @@ Result<Topology> build_topology(const MeshView& mesh, const TopologyOptions& opt
                                 const Context& context) {
   Result<WeldedVertices> welded = weld_mesh(mesh);
   if (!welded.ok()) return welded.status();
-  return build_topology({mesh, std::move(*welded)}, options, context);
+  std::vector<std::uint32_t> corners(mesh.indices.size());
+  for (std::size_t i = 0; i < corners.size(); ++i) corners[i] = welded->place[mesh.indices[i]];
+  std::vector<std::uint32_t> opposite = pair_links(corners, welded->points.size());
+  return build_topology({mesh, std::move(*welded), std::move(opposite)}, options, context);
 }
 
 Result<Topology> build_topology(WeldedMesh welded, const TopologyOptions& options,
@@ -325,6 +329,7 @@ Result<Topology> build_topology(WeldedMesh welded, const TopologyOptions& option
   const MeshView& mesh = welded.mesh;
   Topology topology;
   take_vertices(mesh, std::move(welded.vertices), topology);
+  topology.opposite = std::move(welded.opposite);
   // Given charts are kept whatever the normals are.
   std::vector<std::uint32_t> thin = measure_triangles(topology, !options.cut_at_uv_seams);
   if (context.cancelled()) return Status::cancelled();

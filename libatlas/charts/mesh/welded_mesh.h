@@ -13,6 +13,7 @@ Result<WeldedVertices> weld_mesh(const MeshView& mesh);
 struct WeldedMesh {
   MeshView mesh;
   WeldedVertices vertices;
+  std::vector<std::uint32_t> opposite;  // pair_links() of the places
 };
 
 // Error: cancelled.
