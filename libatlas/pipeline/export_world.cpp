@@ -16,6 +16,7 @@
 #include "libatlas/pipeline/advice.h"
 #include "libatlas/pipeline/assemble_world.h"
 #include "libatlas/pipeline/bake_pages.h"
+#include "libatlas/pipeline/finish_mesh.h"
 #include "libatlas/pipeline/layout_options.h"
 #include "libatlas/pipeline/longest_sides.h"
 #include "libatlas/pipeline/more_mip_levels.h"
@@ -81,6 +82,7 @@ class Export {
     if (plan_.simplify) {
       if (Status s = simplify(); !s.ok()) return s;
     }
+    if (Status s = finish(); !s.ok()) return s;
     if (Status s = write(); !s.ok()) return s;
     report_.carried_out = true;
     for (std::string& line : advice_on(report_, options_))
@@ -349,18 +351,25 @@ class Export {
     return {};
   }
 
+  Status finish() {
+    const Context& context = record_.begin("uvs");
+    const SimplifiedMesh* coarse = coarse_ ? &*coarse_ : nullptr;
+    finished_ =
+        finish_mesh({scene_, options_, charts_, layout_, coarse, plan_.bake}, report_, context);
+    if (context.cancelled()) return Status::cancelled();
+    record_.finish({charts_.uvs.size(), report_.triangles_out, "triangles",
+                    fmt::format("99.9 % {:.3f} as written", report_.written_stretch_999)});
+    return {};
+  }
+
   Status write() {
     const Context& context = record_.begin("writing");
-    const ExportToWrite made{scene_,
-                             options_,
-                             charts_,
-                             layout_,
-                             coarse_ ? &*coarse_ : nullptr,
-                             plan_.bake,
-                             sampler_ ? &*sampler_ : nullptr,
-                             image_sources_,
-                             view_};
-    Result<StageOutcome> written = write_export(made, files_, report_, context);
+    ExportToWrite made{scene_,          options_,
+                       charts_,         layout_,
+                       finished_->mesh, std::move(finished_->uvs),
+                       plan_.bake,      sampler_ ? &*sampler_ : nullptr,
+                       image_sources_,  view_};
+    Result<StageOutcome> written = write_export(std::move(made), files_, report_, context);
     if (!written.ok()) return written.status();
     record_.finish(std::move(*written));
     return {};
@@ -383,6 +392,7 @@ class Export {
   std::vector<Vec2d> densities_, full_densities_;  // texels per unit, one per chart
   PageLayout layout_;
   std::optional<SimplifiedMesh> coarse_;
+  std::optional<FinishedMesh> finished_;
   std::vector<std::filesystem::path> image_sources_;  // where the pages' images lie until commit
   AtomicFiles files_;
   ExportReport report_;
