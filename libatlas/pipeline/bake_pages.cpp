@@ -28,6 +28,13 @@ class BookedTime {
   ~BookedTime() { sum_ += clock_() - start_; }
 
  private:
+  // A page, and its file if that is WebP. A lossy one shows what its file does.
+  struct FinishedPage {
+    BakedPage page = {};
+    std::vector<std::uint8_t> webp = {};
+    std::optional<double> psnr = {};
+  };
+
   double (*clock_)();
   double& sum_;
   double start_;
@@ -171,13 +178,6 @@ class PageBaker {
   }
 
   void report_images() const { images_.report("images", double(written_) / double(pages_.size())); }
-
-  // A page, and its file if that is WebP. A lossy one shows what its file does.
-  struct FinishedPage {
-    BakedPage page = {};
-    std::vector<std::uint8_t> webp = {};
-    std::optional<double> psnr = {};
-  };
 
   Result<FinishedPage> finish(std::size_t p) {
     Result<BakedPage> baked = bake(p);
