@@ -28,13 +28,6 @@ class BookedTime {
   ~BookedTime() { sum_ += clock_() - start_; }
 
  private:
-  // A page, and its file if that is WebP. A lossy one shows what its file does.
-  struct FinishedPage {
-    BakedPage page = {};
-    std::vector<std::uint8_t> webp = {};
-    std::optional<double> psnr = {};
-  };
-
   double (*clock_)();
   double& sum_;
   double start_;
@@ -101,6 +94,13 @@ class PageBaker {
   }
 
  private:
+  // A page, and its file if that is WebP. A lossy one shows what its file does.
+  struct FinishedPage {
+    BakedPage page = {};
+    std::vector<std::uint8_t> webp = {};
+    std::optional<double> psnr = {};
+  };
+
   Status draw_samples() {
     if (!options_.measure_error) return {};
     const BookedTime cpu_watch(own_cpu_seconds, result_.measure_cpu);
