@@ -11,6 +11,7 @@
 #include "apps/atlas-export/flag_names.h"
 #include "apps/common/depfile.h"
 #include "apps/common/files.h"
+#include "apps/common/options.h"
 #include "apps/common/program.h"
 #include "apps/common/terminal.h"
 #include "libatlas/core/clock.h"
