@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <string>
 #include <utility>
@@ -14,6 +13,7 @@
 #include "libatlas/core/parallel.h"
 #include "libatlas/pack/fit.h"
 #include "libatlas/param/orient.h"
+#include "libatlas/unwrap/check_pages.h"
 
 namespace atlas {
 namespace {
@@ -23,26 +23,11 @@ constexpr float kFarthestUv = 1e6f;
 constexpr std::uint64_t kMostLayouts = 2000;
 
 Status check(const IslandOptions& o) {
-  const auto bad = [](const std::string& text) {
-    return Status(ErrorCode::bad_option, "islands: " + text);
-  };
-  if (o.pages < 1) return bad("pages is 0 (ask for at least one)");
-  if (o.page_size < 64 || o.page_size > 16384)
-    return bad(fmt::format("page_size is {} (64 to 16384 texels)", o.page_size));
-  const bool powers = o.square || o.pages > 1;
-  if (powers && !std::has_single_bit(std::uint32_t(o.page_size)))
-    return bad(
-        fmt::format("page_size is {} (a power of two for square or several pages)", o.page_size));
-  if (o.padding < 0 || o.padding > o.page_size / 4)
-    return bad(fmt::format("padding is {} (0 to a quarter of page_size)", o.padding));
-  if (o.alignment < 1 || o.alignment > o.page_size / 4)
-    return bad(fmt::format("alignment is {} (1 to a quarter of page_size)", o.alignment));
-  if (powers && !std::has_single_bit(std::uint32_t(o.alignment)))
-    return bad(
-        fmt::format("alignment is {} (a power of two for square or several pages)", o.alignment));
+  if (Status s = check_pages("islands", o); !s.ok()) return s;
   if (!(o.texels_per_uv >= 0) || !std::isfinite(o.texels_per_uv))
-    return bad(fmt::format("texels_per_uv is {} (a number above 0, or 0 for as many as fit)",
-                           o.texels_per_uv));
+    return {ErrorCode::bad_option,
+            fmt::format("islands: texels_per_uv is {} (a number above 0, or 0 for as many as fit)",
+                        o.texels_per_uv)};
   return {};
 }
 
@@ -173,18 +158,12 @@ Result<FitResult> fit_islands(const IslandOptions& options, const std::vector<Fl
     items.push_back(box_of(island.corners));
     shapes.push_back({island.corners, island.triangles});
   }
-  FitOptions fit;
-  fit.pages = options.pages;
-  fit.page_size = options.page_size;
-  fit.power_of_two = fit.square = options.square || options.pages > 1;
-  fit.free_aspect = !fit.square;
-  fit.padding = options.padding;
-  fit.alignment = options.alignment;
+  FitOptions fit{options};
+  fit.power_of_two = options.square || options.pages > 1;
+  fit.free_aspect = !fit.power_of_two;
   fit.minimum_side = 0;
-  fit.allow_rotation = options.allow_rotation;
   fit.rotations = options.allow_rotation ? 4 : 1;
   fit.any_angle = options.allow_rotation;
-  fit.preset = options.preset;
   fit.effort = kMostLayouts;
   fit.shapes = shapes;
   Result<double> covered = covered_area(shapes, context);

@@ -96,7 +96,7 @@ TEST(Atlas, OneMeshIsUnwrappedAsByUnwrapMesh) {
 }
 
 TEST(Atlas, MeshesGetTheirOwnBackAndDoNotLieOnEachOther) {
-  const UnwrappedAtlas atlas = unwrapped(atlas_of(three_shapes()), {.page_size = 512});
+  const UnwrappedAtlas atlas = unwrapped(atlas_of(three_shapes()), {{.page_size = 512}});
   ASSERT_EQ(atlas.mesh_count(), 3u);
   for (std::size_t i = 0; i < 3; ++i) expect_own(three_shapes()[i], atlas.mesh(i));
   const AtlasMeasures measures = measured(three_shapes(), atlas);
@@ -243,7 +243,7 @@ TEST(Atlas, GivenUvsAreKeptWhereAMeshHasThem) {
   Atlas atlas;
   ASSERT_TRUE(atlas.add(view_of(box(2))).ok());
   ASSERT_TRUE(atlas.add(given).ok());
-  const UnwrappedAtlas result = unwrapped(atlas, {.charts = {.keep_uv_charts = true}});
+  const UnwrappedAtlas result = unwrapped(atlas, {{}, {.keep_uv_charts = true}});
   EXPECT_EQ(result.all().charts.repairs.kept_charts, 1u);
   for (std::size_t c = 0; c < result.all().charts.charts.size(); ++c)
     EXPECT_EQ(result.all().charts.charts[c].kept, result.mesh_of_chart(c) == 1);
