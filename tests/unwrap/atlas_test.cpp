@@ -234,6 +234,26 @@ TEST(Atlas, MaterialsAndMarkedSeamsAreThoseOfTheirMesh) {
   EXPECT_EQ(charts, (std::vector<std::size_t>{1, 2, 1, plate.triangle_count()}));
 }
 
+// A roof of two plates with a ridge, whose vertices have one normal, or one for each side.
+TEST(Atlas, EdgesAtWhichNormalsDifferAreSeams) {
+  const Shape left = grid(4, 4);
+  Shape right = moved(grid(4, 4), 1, {1, 0, 0});
+  for (Vec3f& p : right.positions) p.z = 0.1f * (p.x - 1);
+  const Shape roof = together(left, right);
+  std::vector<Vec3f> normals(roof.positions.size(), {0, 0, 1});
+  const auto charts = [&] {
+    const StridedMesh mesh{.positions = {roof.positions.data(), roof.positions.size(), 0},
+                           .indices = {roof.indices.data(), roof.indices.size(), 4},
+                           .normals = {normals.data(), normals.size(), 0}};
+    Atlas atlas;
+    EXPECT_TRUE(atlas.add(mesh).ok());
+    return unwrapped(atlas).all().charts.charts.size();
+  };
+  EXPECT_EQ(charts(), 1u);
+  std::fill_n(normals.begin(), left.positions.size(), Vec3f{-0.1f, 0, 1});
+  EXPECT_EQ(charts(), 2u);
+}
+
 TEST(Atlas, GivenUvsAreKeptWhereAMeshHasThem) {
   const Shape plate = grid(4, 4);
   std::vector<Vec2f> uvs;
