@@ -15,7 +15,7 @@ build_packages="
   libglfw3-dev libepoxy-dev libegl-dev libgl-dev libimgui-dev"
 test_packages="
   libgtest-dev libbenchmark-dev libcoin-dev xvfb xauth pngcheck gnuplot-nox valgrind
-  libgl1-mesa-dri libegl1 chromium"
+  libgl1-mesa-dri libegl1 chromium abigail-tools"
 # Not every release has these. Tests that need them are skipped there.
 test_packages_if_any="view3dscene"
 

@@ -218,7 +218,8 @@ class Assembler {
       }
     }
     const auto id = static_cast<std::uint32_t>(set_.charts.size());
-    const std::uint32_t vertex = topology_.source_vertex[topology_.corner_vertex[3 * t]];
+    const std::uint32_t vertex =
+        topology_.source_vertex[topology_.corner_vertex[3 * std::size_t{t}]];
     const auto [known, added] = first_alike_.emplace(object_and_material(vertex, material(t)), id);
     if (!added) return known->second;
     Chart chart;  // a single point
@@ -228,7 +229,7 @@ class Assembler {
     chart.axis = {0, 0, 1};
     chart.planar_projection = true;
     set_.uvs.push_back({});
-    set_.uv_vertex.push_back(topology_.source_vertex[topology_.corner_vertex[3 * std::size_t{t}]]);
+    set_.uv_vertex.push_back(vertex);
     set_.charts.push_back(chart);
     return id;
   }
