@@ -152,7 +152,7 @@ class Assembler {
 
   // A triangle without area that no chart holds is drawn nowhere: it joins the chart of a
   // neighbour, one that shares an edge if there is one, and lies on that edge or on a vertex; else
-  // any chart of its material.
+  // any chart of its object and material.
   void place_degenerate() {
     if (topology_.defects.degenerate_triangles == 0) return;
     std::vector<std::uint8_t> wanted(topology_.points.size(), 0);
@@ -198,20 +198,28 @@ class Assembler {
         return;
       }
     }
-    const std::uint32_t chart = first_chart_of_material(t);
+    const std::uint32_t chart = first_chart_like(t);
     set_.triangle_chart[t] = chart;
     for (std::uint32_t c = 0; c < 3; ++c) {
       set_.triangle_uv[3 * t + c] = set_.charts[chart].first_uv;
     }
   }
 
-  std::uint32_t first_chart_of_material(std::uint32_t t) {
-    if (first_of_material_.empty()) {
-      for (std::uint32_t k = 0; k < set_.charts.size(); ++k)
-        first_of_material_.emplace(set_.charts[k].material, k);
+  std::uint64_t object_and_material(std::uint32_t vertex, std::uint32_t material) const {
+    return key(mesh_.objects.empty() ? 0 : mesh_.objects[vertex], material);
+  }
+
+  std::uint32_t first_chart_like(std::uint32_t t) {
+    if (first_alike_.empty()) {
+      for (std::uint32_t k = 0; k < set_.charts.size(); ++k) {
+        const Chart& chart = set_.charts[k];
+        first_alike_.emplace(object_and_material(set_.uv_vertex[chart.first_uv], chart.material),
+                             k);
+      }
     }
     const auto id = static_cast<std::uint32_t>(set_.charts.size());
-    const auto [known, added] = first_of_material_.emplace(material(t), id);
+    const std::uint32_t vertex = topology_.source_vertex[topology_.corner_vertex[3 * t]];
+    const auto [known, added] = first_alike_.emplace(object_and_material(vertex, material(t)), id);
     if (!added) return known->second;
     Chart chart;  // a single point
     chart.first_uv = static_cast<std::uint32_t>(set_.uvs.size());
@@ -247,7 +255,8 @@ class Assembler {
   const Topology& topology_;
   ChartSet& set_;
   double unscale_;
-  std::unordered_map<std::uint32_t, std::uint32_t> first_of_material_;  // filled when asked for
+  // By object and material, filled when asked for.
+  std::unordered_map<std::uint64_t, std::uint32_t> first_alike_;
 };
 
 // Length of the edges that exactly two triangles share in space, but not in uv.

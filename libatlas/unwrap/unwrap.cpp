@@ -66,17 +66,12 @@ Result<PagesOfParts> lay_out(const MeshView& mesh, const UnwrapOptions& options,
   const double filling = filling_density(charts, texels);
   const double density =
       options.texels_per_unit > 0 ? std::min(options.texels_per_unit, filling) : filling;
-  LayoutOptions layout;
-  layout.pages = options.pages;
-  layout.page_size = options.page_size;
+  LayoutOptions layout{options};
   layout.padding = padding(options);
   layout.alignment = alignment(options);
-  layout.allow_rotation = options.allow_rotation;
-  layout.preset = options.packing;
   layout.minimum_side = 0;
   layout.outlines = true;
   layout.remedy = "ask for more pages, a larger page_size, less padding or fewer mip_levels";
-  layout.square = options.square;
   layout.free_aspect = options.pages == 1 && !options.square;
   const PlainUvs uvs{mesh, options.charts, density};
   if (options.part_gaps) return fill_pages_apart(uvs, layout, charts, context);
@@ -110,6 +105,16 @@ void join_corners(std::span<const std::uint32_t> indices, std::span<const Vec2f>
 }
 
 }  // namespace
+
+UnwrapOptions lightmap_options(double texels_per_metre, double metres_per_unit) {
+  UnwrapOptions options;
+  options.texels_per_unit = texels_per_metre * metres_per_unit;
+  options.mip_levels = 2;
+  options.padding = gutter_pad(options.mip_levels) + 1;
+  options.square = true;
+  options.part_gaps = true;
+  return options;
+}
 
 Result<UnwrappedMesh> unwrap_mesh(const MeshView& mesh, const UnwrapOptions& options,
                                   const Context& context) {

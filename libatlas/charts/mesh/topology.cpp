@@ -52,6 +52,9 @@ Status check_input(const MeshView& mesh) {
   if (!mesh.seams.empty() && mesh.seams.size() != n) {
     return {ErrorCode::bad_input, "mesh: seams must be empty or 3 a triangle"};
   }
+  if (!mesh.objects.empty() && mesh.objects.size() != mesh.positions.size()) {
+    return {ErrorCode::bad_input, "mesh: objects must be empty or 1 a position"};
+  }
   if (!mesh.density.empty() && mesh.density.size() != n / 3) {
     return {ErrorCode::bad_input, "mesh: densities must be empty or 1 a triangle"};
   }
@@ -311,7 +314,7 @@ Result<WeldedVertices> weld_mesh(const MeshView& mesh) {
   if (Status status = check_input(mesh); !status.ok()) return status;
   const std::vector<std::uint8_t> used = used_vertices(mesh.indices, mesh.positions.size());
   if (Status status = check_positions(mesh, used); !status.ok()) return status;
-  return weld_vertices(mesh.positions, used);
+  return weld_vertices(mesh.positions, used, mesh.objects);
 }
 
 Result<Topology> build_topology(const MeshView& mesh, const TopologyOptions& options,

@@ -21,7 +21,9 @@ struct WeldedVertices {
 std::vector<std::uint8_t> used_vertices(std::span<const std::uint32_t> indices, std::size_t count);
 
 // Welds vertices whose positions are bitwise equal once coordinates that are mere rounding have
-// become 0 (drop_rounding()). Places are numbered in input order. Takes linear time.
-WeldedVertices weld_vertices(std::span<const Vec3f> positions, std::span<const std::uint8_t> used);
+// become 0 (drop_rounding()), and whose objects are equal (one per vertex, or empty: all are).
+// Places are numbered in input order. Takes linear time.
+WeldedVertices weld_vertices(std::span<const Vec3f> positions, std::span<const std::uint8_t> used,
+                             std::span<const std::uint32_t> objects = {});
 
 }  // namespace atlas
