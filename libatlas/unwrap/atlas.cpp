@@ -14,6 +14,7 @@
 #include "libatlas/core/half_edge.h"
 #include "libatlas/core/is_finite.h"
 #include "libatlas/core/no_index.h"
+#include "libatlas/core/sort_total.h"
 
 namespace atlas {
 namespace {
@@ -150,7 +151,7 @@ std::vector<std::uint8_t> find_seams(std::span<const std::uint32_t> place,
     if (place[a] > place[b]) std::swap(a, b);
     sides.push_back({place[a], place[b], uv[a], uv[b], h});
   }
-  std::sort(sides.begin(), sides.end(), [](const EdgeSide& a, const EdgeSide& b) {
+  sort_total(sides.begin(), sides.end(), [](const EdgeSide& a, const EdgeSide& b) {
     return std::tie(a.low, a.high, a.half_edge) < std::tie(b.low, b.high, b.half_edge);
   });
   std::vector<std::uint8_t> seams(place.size(), 0);

@@ -12,6 +12,7 @@
 #include "libatlas/core/disjoint_sets.h"
 #include "libatlas/core/no_index.h"
 #include "libatlas/core/parallel.h"
+#include "libatlas/core/portable_math.h"
 #include "libatlas/pack/fit.h"
 #include "libatlas/param/orient.h"
 
@@ -201,11 +202,11 @@ Result<FitResult> fit_islands(const IslandOptions& options, const std::vector<Fl
 PackedIslands::Island placed(const FlatIsland& island, const FitPlacement& at, double density) {
   // A turned corner is R p + t, which sends the first uv, whose difference to the base is 0, to t.
   const Vec2d t = island.corners.front();
-  const double c = std::cos(at.angle) * at.scale, s = std::sin(at.angle) * at.scale;
+  const double c = portable::cos(at.angle) * at.scale, s = portable::sin(at.angle) * at.scale;
   PackedIslands::Island result{at.page, 0, {}};
-  result.angle = at.angle + std::atan2(island.turned.sine, island.turned.cosine);
-  const double all = density * at.scale, x = std::cos(result.angle) * all,
-               y = std::sin(result.angle) * all;
+  result.angle = at.angle + portable::atan2(island.turned.sine, island.turned.cosine);
+  const double all = density * at.scale, x = portable::cos(result.angle) * all,
+               y = portable::sin(result.angle) * all;
   result.offset = {at.offset.x + c * t.x - s * t.y - (x * island.base.x - y * island.base.y),
                    at.offset.y + s * t.x + c * t.y - (y * island.base.x + x * island.base.y)};
   return result;
@@ -240,7 +241,7 @@ Result<PackedIslands> pack_islands(const IslandView& view, const IslandOptions& 
   for (std::size_t i = 0; i < islands.size(); ++i) {
     const FitPlacement& at = fitted->placements[i];
     packed.islands.push_back(placed(islands[i], at, density));
-    const double c = std::cos(at.angle) * at.scale, s = std::sin(at.angle) * at.scale;
+    const double c = portable::cos(at.angle) * at.scale, s = portable::sin(at.angle) * at.scale;
     const Extent page = packed.pages[at.page];
     for (std::size_t k = 0; k < islands[i].uvs.size(); ++k) {
       const Vec2d p = islands[i].corners[k];
