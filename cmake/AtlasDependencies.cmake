@@ -20,6 +20,12 @@ find_path(WEBP_INCLUDE_DIR webp/encode.h REQUIRED)
 find_library(LIBATLAS_WEBP_LIBRARY webp REQUIRED)    # libwebp-dev: pages as WebP
 pkg_check_modules(OIIO REQUIRED IMPORTED_TARGET OpenImageIO)  # libopenimageio-dev: image files
 
+# Eigen adds up in another order with the vectors of each processor, and uvs have the same bits on all.
+# Its sparse factorisations, for which it is used, have no vectors anyway.
+add_library(atlas_eigen INTERFACE)
+target_link_libraries(atlas_eigen INTERFACE Eigen3::Eigen)
+target_compile_definitions(atlas_eigen INTERFACE EIGEN_DONT_VECTORIZE)
+
 find_path(OPENMESH_INCLUDE_DIR OpenMesh/Core/Mesh/TriMesh_ArrayKernelT.hh REQUIRED)
 find_library(OPENMESH_CORE_LIBRARY OpenMeshCore REQUIRED)     # libopenmesh-dev: half-edges
 add_library(atlas_openmesh INTERFACE)

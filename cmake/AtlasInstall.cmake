@@ -6,7 +6,7 @@
 # OpenImageIO is not among them: the module that needs it is loaded when needed (libatlas/image).
 # Left out: what is headers only, and so ends at our own .cpp files.
 set(ATLAS_LINK_AS_TARGET TBB::tbb fmt::fmt ZLIB::ZLIB meshoptimizer::meshoptimizer glfw PkgConfig::EPOXY PkgConfig::EGL PkgConfig::IMGUI)
-set(ATLAS_HEADERS_ONLY glm::glm Eigen3::Eigen nlohmann_json::nlohmann_json atlas_options)
+set(ATLAS_HEADERS_ONLY glm::glm nlohmann_json::nlohmann_json atlas_options)
 
 # atlas_gather(TARGET OUTPUT_NAME module...): a library of all the modules' objects.
 function(atlas_gather target output)

@@ -346,12 +346,7 @@ Result<ChartSet> make_charts(const MeshView& mesh, const ChartOptions& options,
   given.density = relative.values;
   CanonicalMesh canonical = canonical_mesh(given, *welded);
   welded = WeldedVertices{};
-  given.positions = {};
-  given.indices = canonical.indices;
-  given.materials = canonical.materials;
-  given.density = canonical.density;
-  given.texcoord_indices = canonical.texcoord_indices;
-  given.seams = canonical.seams;
+  given = canonical.view(given.texcoords);
   Result<Topology> built = build_topology(
       {given, std::move(canonical.places), std::move(canonical.opposite)},
       {options.split_at_materials, options.keep_uv_charts, uv_aspects(options)}, context);
