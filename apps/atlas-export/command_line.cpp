@@ -25,7 +25,7 @@ void add_scene_options(CLI::App& app, ExportCommand& command, RawText& raw) {
                  "Scene: .obj, .ply, .off, .stl, .gltf, .glb, or a .wrl or .wrz of this program")
       ->required();
   app.add_option("-o,--output", command.options.target,
-                 "World to write: .wrl, .wrz, .obj, .gltf or .glb; --plan needs none");
+                 "World to write: .html, .wrl, .wrz, .obj, .gltf or .glb; --plan needs none");
   app.add_option("--unit", raw.unit, "Length of one scene unit: m, cm, mm, in, ft, km or metres")
       ->capture_default_str();
   app.add_option("--illumination", command.read.illumination_file,
@@ -170,6 +170,10 @@ void add_page_options(CLI::App& app, ExportOptions& options) {
       ->capture_default_str()
       ->check(positive());
   app.add_flag("--exr", options.exr, "Also write scene-linear OpenEXR pages")
+      ->excludes("--charts-only");
+  app.add_flag("--linear", options.linear,
+               "Pages of an .html hold the light itself: exposure, tone curve and false colours in "
+               "the browser")
       ->excludes("--charts-only");
   app.add_option("--png-level", options.png_compression, "PNG compression, 0..9; 1 to 5 are one")
       ->capture_default_str()

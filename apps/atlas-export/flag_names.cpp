@@ -7,7 +7,7 @@ namespace atlas::app {
 namespace {
 
 using FlagName = std::pair<std::string_view, std::string_view>;
-constexpr std::array<FlagName, 29> kFlagNames{{
+constexpr std::array<FlagName, 31> kFlagNames{{
     {"ExportOptions::atlases", "--atlases"},
     {"ExportOptions::lightmap_pages", "--atlases"},
     {"ExportOptions::plain_pages", "--atlases"},
@@ -24,6 +24,8 @@ constexpr std::array<FlagName, 29> kFlagNames{{
     {"ExportOptions::keep_scene", "--keep-scene"},
     {"ExportOptions::uv_set", "--uv-set"},
     {"ExportOptions::udim", "--udim"},
+    {"ExportOptions::linear", "--linear"},
+    {"ExportOptions::exr", "--exr"},
     {"ExportOptions::quantity", "--quantity"},
     {"ExportOptions::split_at_light", "--across-light"},
     {"ChartOptions::cone_degrees", "--cone"},

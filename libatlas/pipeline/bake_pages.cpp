@@ -10,6 +10,7 @@
 #include "libatlas/core/background.h"
 #include "libatlas/core/clock.h"
 #include "libatlas/core/parallel.h"
+#include "libatlas/exporters/html/light_page.h"
 #include "libatlas/exporters/world.h"
 #include "libatlas/image/image_io.h"
 
@@ -37,6 +38,8 @@ std::vector<std::vector<ChartPlacement>> placements_by_page(const PageLayout& la
 // The pages that are baked at once take at most this many bytes together, and so do those that wait
 // to be written. A single page may take more.
 constexpr std::size_t kBytesAtOnce = std::size_t{256} << 20;
+
+constexpr int kErrorCell = 32;  // texels
 
 class PageBaker {
  public:
@@ -88,6 +91,14 @@ class PageBaker {
     return {};
   }
 
+  bool floats() const { return options_.exr || options_.linear; }
+
+  // Writes what viewers look up.
+  Status write_image(const std::filesystem::path& path, const BakedPage& page) const {
+    if (options_.linear) return write_light_page(path, page.linear);
+    return write_png(path, page.display, {options_.png_compression, true});
+  }
+
   // Returns whether the caller's thread writes images, instead of threads in the background.
   bool writes_itself() const { return pages_.size() < 2 || context_.threads == 1; }
 
@@ -95,7 +106,7 @@ class PageBaker {
   // of threads if memory allows, because a page may hold a single chart, which occupies one thread.
   std::size_t pages_at_once() const {
     if (writes_itself()) return 1;
-    const std::size_t texel = options_.exr ? 3 + 3 * sizeof(float) : 3;
+    const std::size_t texel = floats() ? 3 + 3 * sizeof(float) : 3;
     std::size_t largest = 1;  // texels of a page
     for (const auto& page : layout_.pages)
       largest = std::max(largest, std::size_t(page.width) * std::size_t(page.height));
@@ -122,22 +133,25 @@ class PageBaker {
     if (meter_) {
       const BookedTime cpu_watch(own_cpu_seconds, result_.measure_cpu);
       const BookedTime wall_watch(wall_seconds, result_.measure_wall);
-      meter_->add_page(std::int32_t(p), baked.display);
+      const auto page = std::int32_t(p);
+      options_.linear ? meter_->add_light_page(page, baked.linear)
+                      : meter_->add_page(page, baked.display);
+      const Extent& size = layout_.pages[p];
+      result_.error.push_back(meter_->cells(page, size.width, size.height, kErrorCell));
     }
-    const std::string name = page_name(options_.target, p) + ".png";
+    const std::string name = page_name(options_.target, p) + (options_.linear ? ".light" : ".png");
     std::filesystem::path target = options_.target.parent_path() / name;
-    const std::filesystem::path png = files_.path_for(target);
+    const std::filesystem::path image = files_.path_for(target);
     const std::filesystem::path exr =
         options_.exr ? files_.path_for(target.replace_extension(".exr")) : "";
-    result_.image_sources.push_back(png);
+    result_.image_sources.push_back(image);
     result_.pages.push_back({name, layout_.pages[p].width, layout_.pages[p].height,
                              std::uint32_t(pages_[p].size()), 0});
     const BookedTime watch(wall_seconds, result_.write_wall);
     if (p + 1 == pages_.size()) only_images_are_left();
-    return writing.add([this, p, png, exr, page = std::move(baked)]() -> Status {
+    return writing.add([this, p, image, exr, page = std::move(baked)]() -> Status {
       const BookedTime own_watch(own_cpu_seconds, write_cpu_[p]);
-      if (Status s = write_png(png, page.display, {options_.png_compression, true}); !s.ok())
-        return s;
+      if (Status s = write_image(image, page); !s.ok()) return s;
       if (Status s = exr.empty() ? Status() : write_exr(exr, page.linear); !s.ok()) return s;
       const std::lock_guard lock(reporting_);
       ++written_;
@@ -175,7 +189,7 @@ class PageBaker {
     bake.shifts = options_.shifts;
     bake.mip_levels = mip_levels_;
     bake.method = options_.bake_method;
-    bake.linear = options_.exr;
+    bake.linear = floats();
     return bake_page(light_, pages_[p], bake, context);
   }
 

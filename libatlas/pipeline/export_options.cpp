@@ -35,9 +35,13 @@ Status check_options(const ExportOptions& o) {
   if (Status s = check_world_extension(o.target); !s.ok()) return s;
   if (o.keep_scene && !holds_scene(o.target)) {
     return {ErrorCode::bad_option,
-            "ExportOptions::keep_scene: VRML has no room for uvs beside the scene's own (write "
-            ".gltf, .glb or "
-            ".obj)"};
+            "ExportOptions::keep_scene: VRML has no room for uvs beside the scene's own, and .html "
+            "none for the scene (write .gltf, .glb or .obj)"};
+  }
+  if (o.linear && !holds_light(o.target) && !o.target.empty()) {
+    return {ErrorCode::bad_option,
+            "ExportOptions::linear: only pages of HTML hold the light itself (write .html, or add "
+            "ExportOptions::exr instead)"};
   }
   if (o.plain_pages < 1) return out_of_range("plain_pages", "at least 1");
   if (o.lightmap_pages < 1) return out_of_range("lightmap_pages", "at least 1");

@@ -26,7 +26,8 @@ struct ExtraFile {
 constexpr std::int32_t kMostMipLevels = 5;
 
 struct ExportOptions {
-  // The extension chooses the format: .wrl, .wrz, .obj, .gltf, .glb. Images are written beside it.
+  // The extension chooses the format: .wrl, .wrz, .obj, .gltf, .glb, .html. Images
+  // are written beside it, except by the last two.
   std::filesystem::path target = {};
 
   // The budget: at most `atlases` (>= 1) pages of at most atlas_size² texels.
@@ -84,7 +85,10 @@ struct ExportOptions {
   // silhouettes move. With 0.15, it loses 1.8 dB and has 2.5 times the triangles.
   double simplify_slip = 0.15;
   Up up = Up::y;
-  bool exr = false;                  // also write scene-linear OpenEXR pages
+  bool exr = false;  // also write scene-linear OpenEXR pages
+  // For .html: its pages hold the light itself, so that exposure and tone curve can be chosen, and
+  // values read, in the browser.
+  bool linear = false;
   std::int32_t png_compression = 3;  // zlib level 0..9; 1 to 5 are the same (PngOptions::smooth)
 
   bool charts_only = false;  // make charts and uvs only: bake no light, write no image

@@ -298,6 +298,7 @@ class Export {
     if (!baked.ok()) return files_.told_by_target(baked.status());
     report_.pages = baked->pages;
     image_sources_ = std::move(baked->image_sources);
+    error_ = std::move(baked->error);
     std::uint64_t bytes = 0;
     for (const PageReport& page : baked->pages) {
       bytes += page.image_bytes;
@@ -358,6 +359,7 @@ class Export {
                              plan_.bake,
                              sampler_ ? &*sampler_ : nullptr,
                              image_sources_,
+                             error_,
                              view_};
     Result<StageOutcome> written = write_export(made, files_, report_, context);
     if (!written.ok()) return written.status();
@@ -383,6 +385,7 @@ class Export {
   PageLayout layout_;
   std::optional<SimplifiedMesh> coarse_;
   std::vector<std::filesystem::path> image_sources_;  // where the pages' images lie until commit
+  std::vector<FidelityMeter::Cells> error_;           // one per page, or none
   AtomicFiles files_;
   ExportReport report_;
   StageRecorder record_;
