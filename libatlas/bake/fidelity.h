@@ -7,10 +7,10 @@
 #include <vector>
 
 #include "libatlas/bake/bake.h"
-#include "libatlas/bake/placement.h"
 #include "libatlas/core/context.h"
 #include "libatlas/core/image.h"
 #include "libatlas/core/status.h"
+#include "libatlas/uvs/placement.h"
 
 namespace atlas {
 

@@ -12,8 +12,8 @@
 #include "libatlas/bake/fidelity.h"
 #include "libatlas/core/atomic_file.h"
 #include "libatlas/pipeline/export_options.h"
-#include "libatlas/pipeline/page_layout.h"
 #include "libatlas/report/export_report.h"
+#include "libatlas/unwrap/page_layout.h"
 
 namespace atlas {
 

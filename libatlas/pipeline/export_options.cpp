@@ -6,8 +6,8 @@
 #include <bit>
 #include <cmath>
 
-#include "libatlas/bake/placement.h"
 #include "libatlas/core/file_extension.h"
+#include "libatlas/uvs/placement.h"
 
 namespace atlas {
 namespace {

@@ -16,21 +16,23 @@
 #include "libatlas/pipeline/advice.h"
 #include "libatlas/pipeline/assemble_world.h"
 #include "libatlas/pipeline/bake_pages.h"
-#include "libatlas/pipeline/fill_pages.h"
+#include "libatlas/pipeline/finish_mesh.h"
 #include "libatlas/pipeline/layout_options.h"
 #include "libatlas/pipeline/longest_sides.h"
 #include "libatlas/pipeline/more_mip_levels.h"
-#include "libatlas/pipeline/page_layout.h"
-#include "libatlas/pipeline/part_gaps.h"
 #include "libatlas/pipeline/size_textures.h"
 #include "libatlas/pipeline/stage_recorder.h"
 #include "libatlas/pipeline/suit_pages.h"
+#include "libatlas/pipeline/texture_gaps.h"
 #include "libatlas/pipeline/write_export.h"
 #include "libatlas/scene/check_scene.h"
 #include "libatlas/scene/uv_page.h"
 #include "libatlas/simplify/simplify.h"
 #include "libatlas/texture/chart_textures.h"
 #include "libatlas/texture/light_seams.h"
+#include "libatlas/unwrap/fill_pages.h"
+#include "libatlas/unwrap/page_layout.h"
+#include "libatlas/unwrap/part_gaps.h"
 
 namespace atlas {
 namespace {
@@ -80,6 +82,7 @@ class Export {
     if (plan_.simplify) {
       if (Status s = simplify(); !s.ok()) return s;
     }
+    if (Status s = finish(); !s.ok()) return s;
     if (Status s = write(); !s.ok()) return s;
     report_.carried_out = true;
     for (std::string& line : advice_on(report_, options_))
@@ -194,9 +197,9 @@ class Export {
     sizing_ = sized->sizing;
     TextureResult& textures = sized->textures;
     const PagesOfCharts pages{view_of(scene_), options_.charts.max_stretch,
-                              double(options_.atlases) * options_.atlas_size * options_.atlas_size,
-                              texture.max_side};
-    report_.opened_charts = open_part_gaps(pages, textures.charts, charts_, context).charts;
+                              double(options_.atlases) * options_.atlas_size * options_.atlas_size};
+    const TexturesOfCharts opened{textures.charts, texture.max_side};
+    report_.opened_charts = open_texture_gaps(pages, opened, charts_, context).charts;
     if (context.cancelled()) return Status::cancelled();
     report_charts();
     for (const ChartTexture& t : textures.charts) {
@@ -349,19 +352,31 @@ class Export {
     return {};
   }
 
+  Status finish() {
+    const Context& context = record_.begin("uvs");
+    const SimplifiedMesh* coarse = coarse_ ? &*coarse_ : nullptr;
+    finished_ =
+        finish_mesh({scene_, options_, charts_, layout_, coarse, plan_.bake}, report_, context);
+    if (context.cancelled()) return Status::cancelled();
+    record_.finish({charts_.uvs.size(), report_.triangles_out, "triangles",
+                    fmt::format("99.9 % {:.3f} as written", report_.written_stretch_999)});
+    return {};
+  }
+
   Status write() {
     const Context& context = record_.begin("writing");
-    const ExportToWrite made{scene_,
-                             options_,
-                             charts_,
-                             layout_,
-                             coarse_ ? &*coarse_ : nullptr,
-                             plan_.bake,
-                             sampler_ ? &*sampler_ : nullptr,
-                             image_sources_,
-                             error_,
-                             view_};
-    Result<StageOutcome> written = write_export(made, files_, report_, context);
+    ExportToWrite made{scene_,
+                       options_,
+                       charts_,
+                       layout_,
+                       finished_->mesh,
+                       std::move(finished_->uvs),
+                       plan_.bake,
+                       sampler_ ? &*sampler_ : nullptr,
+                       image_sources_,
+                       error_,
+                       view_};
+    Result<StageOutcome> written = write_export(std::move(made), files_, report_, context);
     if (!written.ok()) return written.status();
     record_.finish(std::move(*written));
     return {};
@@ -384,6 +399,7 @@ class Export {
   std::vector<Vec2d> densities_, full_densities_;  // texels per unit, one per chart
   PageLayout layout_;
   std::optional<SimplifiedMesh> coarse_;
+  std::optional<FinishedMesh> finished_;
   std::vector<std::filesystem::path> image_sources_;  // where the pages' images lie until commit
   std::vector<FidelityMeter::Cells> error_;           // one per page, or none
   AtomicFiles files_;

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "libatlas/bake/placement.h"
 #include "libatlas/core/atomic_file.h"
 #include "libatlas/core/counted.h"
 #include "libatlas/core/degrees.h"
@@ -14,6 +13,7 @@
 #include "libatlas/pipeline/lightmap.h"
 #include "libatlas/scene/triangle_area.h"
 #include "libatlas/texture/luminance.h"
+#include "libatlas/uvs/placement.h"
 
 namespace atlas {
 namespace {

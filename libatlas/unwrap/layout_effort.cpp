@@ -1,4 +1,4 @@
-#include "libatlas/pipeline/layout_effort.h"
+#include "libatlas/unwrap/layout_effort.h"
 
 #include <fmt/format.h>
 
@@ -8,8 +8,8 @@
 
 #include "libatlas/core/progress.h"
 #include "libatlas/pack/fitting/fit_search.h"
-#include "libatlas/pipeline/layout_problem.h"
-#include "libatlas/pipeline/least_room.h"
+#include "libatlas/unwrap/layout_problem.h"
+#include "libatlas/unwrap/least_room.h"
 
 namespace atlas {
 namespace {

@@ -5,8 +5,8 @@
 
 #include "libatlas/charts/charts.h"
 #include "libatlas/core/status.h"
-#include "libatlas/pipeline/layout_effort.h"
-#include "libatlas/pipeline/page_layout.h"
+#include "libatlas/unwrap/layout_effort.h"
+#include "libatlas/unwrap/page_layout.h"
 
 namespace atlas {
 

@@ -1,4 +1,4 @@
-#include "libatlas/pipeline/fill_pages.h"
+#include "libatlas/unwrap/fill_pages.h"
 
 #include <algorithm>
 #include <array>
@@ -8,8 +8,8 @@
 
 #include "libatlas/charts/tiles.h"
 #include "libatlas/core/progress.h"
-#include "libatlas/pipeline/layout_effort.h"
-#include "libatlas/pipeline/least_room.h"
+#include "libatlas/unwrap/layout_effort.h"
+#include "libatlas/unwrap/least_room.h"
 
 namespace atlas {
 namespace {

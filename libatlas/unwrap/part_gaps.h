@@ -6,10 +6,9 @@
 #include <numbers>
 #include <span>
 
-#include "libatlas/bake/placement.h"
 #include "libatlas/charts/gaps.h"
-#include "libatlas/pipeline/fill_pages.h"
-#include "libatlas/texture/chart_textures.h"
+#include "libatlas/unwrap/fill_pages.h"
+#include "libatlas/uvs/placement.h"
 
 namespace atlas {
 
@@ -24,17 +23,11 @@ struct PagesOfCharts {
   MeshView mesh;
   double max_stretch = 1.25;  // largest stretch of charts
   double texels = 0;          // number of texels of all pages
-  std::int32_t max_side = 0;  // longest side of a chart, texels; only for textures
 };
 
 // Opens gaps before packing, for the density that charts will likely have once the common scale is
 // known. `densities` are texels per unit, one per chart; charts with 0 are left alone.
 GapReport open_part_gaps(const PagesOfCharts& pages, std::span<const Vec2d> densities,
-                         ChartSet& charts, const Context& context);
-
-// Does the same for charts with light. Charts of one colour are left alone, because they have no
-// light to mix. A chart that becomes longer than a page gets a lower density.
-GapReport open_part_gaps(const PagesOfCharts& pages, std::span<ChartTexture> textures,
                          ChartSet& charts, const Context& context);
 
 // Measures after packing which gaps are still too narrow, in texels.

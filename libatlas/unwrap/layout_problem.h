@@ -9,7 +9,7 @@
 
 #include "libatlas/charts/charts.h"
 #include "libatlas/pack/fitting/fit_search.h"
-#include "libatlas/pipeline/layout_effort.h"
+#include "libatlas/unwrap/layout_effort.h"
 
 namespace atlas {
 

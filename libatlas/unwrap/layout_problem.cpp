@@ -1,4 +1,4 @@
-#include "libatlas/pipeline/layout_problem.h"
+#include "libatlas/unwrap/layout_problem.h"
 
 #include <algorithm>
 #include <cmath>
@@ -85,13 +85,8 @@ ChartOutlines::ChartOutlines(const ChartSet& set, std::span<const Vec2d> density
 }
 
 FitOptions box_fit_options(const LayoutOptions& options) {
-  FitOptions fit;
-  fit.pages = options.pages;
-  fit.page_size = options.page_size;
-  fit.padding = options.padding;
-  fit.alignment = options.alignment;
+  FitOptions fit{options};
   fit.minimum_side = options.minimum_side;
-  fit.allow_rotation = options.allow_rotation;
   return fit;
 }
 
@@ -107,13 +102,11 @@ LayoutProblem::LayoutProblem(const WantedCharts& wanted, const LayoutEffort& how
   for (std::size_t c = 0; c < items.size(); ++c)
     items[c] = chart_box(charts.charts[c], texels_per_unit[c]);
   static_cast<FitOptions&>(fit) = box_fit_options(options);
-  fit.preset = options.preset;
   // Effort is limited instead of time, because a limit on time would make the result depend on
   // how busy the machine is.
   fit.effort = std::clamp<std::uint64_t>(kBestCharts / std::max<std::size_t>(1, items.size()), 1,
                                          kBestLayouts);
   fit.free_aspect = options.free_aspect;
-  fit.square = options.square;
   fit.wanted_fill = options.wanted_fill;
   fit.press_pages = options.press_pages;
   fit.max_packings = options.max_packings;

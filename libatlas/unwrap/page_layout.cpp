@@ -1,9 +1,9 @@
-#include "libatlas/pipeline/page_layout.h"
+#include "libatlas/unwrap/page_layout.h"
 
 #include <cmath>
 #include <utility>
 
-#include "libatlas/pipeline/layout_effort.h"
+#include "libatlas/unwrap/layout_effort.h"
 
 namespace atlas {
 

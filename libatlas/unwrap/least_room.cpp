@@ -1,4 +1,4 @@
-#include "libatlas/pipeline/least_room.h"
+#include "libatlas/unwrap/least_room.h"
 
 #include <fmt/format.h>
 

@@ -1,4 +1,4 @@
-#include "libatlas/pipeline/part_gaps.h"
+#include "libatlas/unwrap/part_gaps.h"
 
 #include <algorithm>
 #include <cassert>
@@ -82,22 +82,6 @@ GapReport open_part_gaps(const PagesOfCharts& pages, std::span<const Vec2d> dens
   std::vector<double> clearance;
   for (const Vec2d d : densities) clearance.push_back(clearance_at(d) / scale);
   return report_of(widen_gaps(pages.mesh, {clearance, pages.max_stretch}, charts, context));
-}
-
-GapReport open_part_gaps(const PagesOfCharts& pages, std::span<ChartTexture> textures,
-                         ChartSet& charts, const Context& context) {
-  std::vector<Vec2d> densities;
-  for (const ChartTexture& t : textures)
-    densities.push_back(t.content == ChartContent::varied ? t.texels_per_unit : Vec2d{});
-  const GapReport report = open_part_gaps(pages, densities, charts, context);
-  for (std::size_t c = 0; c < textures.size(); ++c) {
-    const Vec2d d = textures[c].texels_per_unit, size = charts.charts[c].size;
-    const double longest = std::max(size.x * d.x, size.y * d.y);
-    if (!(densities[c].x > 0) || !(longest > pages.max_side)) continue;
-    const double fit = pages.max_side / longest;
-    textures[c].texels_per_unit = {fit * d.x, fit * d.y};
-  }
-  return report;
 }
 
 GapReport left_part_gaps(const MeshView& mesh, const ChartSet& charts,

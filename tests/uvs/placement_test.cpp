@@ -1,4 +1,4 @@
-#include "libatlas/bake/placement.h"
+#include "libatlas/uvs/placement.h"
 
 #include <gtest/gtest.h>
 
