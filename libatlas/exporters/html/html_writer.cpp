@@ -263,9 +263,9 @@ Result<WorldFile> write_html(const World& world, const fs::path& path, AtomicFil
   file.write(escaped(world.title));
   file.write(kPageBeforeData);
   std::string text = head.dump(-1, ' ', true, json::error_handler_t::replace);
-  // "</script" would end the element.
-  for (std::size_t at = 0; (at = text.find("</", at)) != std::string::npos;)
-    text.insert(++at, "\\");
+  // "</script" would end the element, and "<!--" begin a comment.
+  for (std::size_t at = 0; (at = text.find('<', at)) != std::string::npos;)
+    text.replace(at, 1, "\\u003c");
   file.write("<script type=\"application/json\" id=\"world\">" + text + "</script>\n");
   write_data(file, "mesh", *mesh);
   if (Status s = write_images(file, world); !s.ok()) return s;

@@ -15,7 +15,7 @@
 namespace atlas {
 namespace {
 
-constexpr int kStepsAnOctave = 1024, kMostCode = 65535;
+constexpr int kStepsAnOctave = 256, kMostCode = 65535;
 
 struct Codes {
   float top = 0;

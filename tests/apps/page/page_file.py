@@ -91,7 +91,7 @@ def read_light(data):
             continue
         r, b = r / 255, b / 255
         g = max(0, 1 - r - b)
-        total = 2 ** (top + (code - 65535) / 1024) / (0.2126 * r + 0.7152 * g + 0.0722 * b)
+        total = 2 ** (top + (code - 65535) / 256) / (0.2126 * r + 0.7152 * g + 0.0722 * b)
         texels += [r * total, g * total, b * total]
     return Image(width, height, texels)
 

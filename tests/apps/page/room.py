@@ -3,7 +3,7 @@ the illuminance in lx."""
 
 import math
 
-LAMP, POWER, FLOOR_OF_LIGHT = (1.9, 2.5, 2.6), 900.0, 40.0
+LAMP, POWER, FLOOR_OF_LIGHT = (1.9, 1.7, 2.9), 900.0, 40.0
 WALLS, BLOCK, STEPS = (0.75, 0.72, 0.68), (0.6, 0.2, 0.15), (0.4, 0.42, 0.5)
 SIZE = (4.0, 2.8, 5.0)
 
@@ -42,7 +42,7 @@ def write(folder):
         normal = cross(u, v)
         size = math.sqrt(sum(x * x for x in normal))
         normal = [x / size for x in normal]
-        counts = [max(1, math.ceil(math.sqrt(sum(x * x for x in side)) / 0.25)) for side in (u, v)]
+        counts = [max(1, math.ceil(math.sqrt(sum(x * x for x in side)) / 0.125)) for side in (u, v)]
         first = len(vertices) + 1
         for j in range(counts[1] + 1):
             for i in range(counts[0] + 1):

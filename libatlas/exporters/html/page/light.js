@@ -35,19 +35,19 @@ function lightTools() {
   // The luma of each code, times 2^(kTopOctave - top).
   function lumas() {
     const table = new Float32Array(65536);
-    for (let c = 1; c < 65536; ++c) table[c] = 2 ** (kTopOctave + (c - 65535) / 1024);
+    for (let c = 1; c < 65536; ++c) table[c] = 2 ** (kTopOctave + (c - 65535) / 256);
     return table;
   }
 
   const bits = new Float32Array(1), asWord = new Uint32Array(bits.buffer);
+  const units = Float32Array.from({length: 33}, (_, exponent) => 2 ** (24 - exponent));
   // The format RGB9_E5 of OpenGL, which rounds each channel to a 512th of the largest or finer.
   function shared(r, g, b) {
     bits[0] = Math.max(r, g, b, 2 ** -16);
     let exponent = (asWord[0] >>> 23) - 127 + 16;
-    let unit = 2 ** (exponent - 24);
-    if (Math.round(bits[0] / unit) === 512) unit = 2 ** (++exponent - 24);
-    return ((exponent << 27) | (Math.round(b / unit) << 18) | (Math.round(g / unit) << 9) |
-      Math.round(r / unit)) >>> 0;
+    if (bits[0] * units[exponent] >= 511.5) ++exponent;
+    const n = units[exponent];
+    return (exponent << 27) | ((b * n + 0.5) << 18) | ((g * n + 0.5) << 9) | (r * n + 0.5);
   }
 
   function colours({codes, red, blue}) {
@@ -109,7 +109,7 @@ function lightOfTexel(page, x, y) {
   const i = clamp(y, 0, page.height - 1) * page.width + clamp(x, 0, page.width - 1);
   if (page.codes[i] === 0) return [0, 0, 0];
   const r = page.red[i] / 255, b = page.blue[i] / 255, g = Math.max(0, 1 - r - b);
-  const sum = 2 ** (page.top + (page.codes[i] - 65535) / 1024) / luma(r, g, b);
+  const sum = 2 ** (page.top + (page.codes[i] - 65535) / 256) / luma(r, g, b);
   return [r * sum, g * sum, b * sum];
 }
 
