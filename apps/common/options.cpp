@@ -208,6 +208,10 @@ CLI::Option* add_off_flag(CLI::App& app, const std::string& name, bool& value,
       name, [&value] { value = false; }, help);
 }
 
+std::string version() {
+  return LIBATLAS_VERSION;
+}
+
 int parse(CLI::App& app, int argc, char** argv) {
   const auto refuse = [&](const std::string& why) {
     const std::string command =

@@ -32,6 +32,9 @@ CLI::Option* add_off_flag(CLI::App& app, const std::string& name, bool& value,
 // the program should end: 0 after the help or the version, 2 after one line about what is wrong.
 int parse(CLI::App& app, int argc, char** argv);
 
+// Returns the version that --version prints.
+std::string version();
+
 // While it lives, options that are added appear under the heading `name` of --help.
 class OptionGroup {
  public:

@@ -3,6 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cerrno>
+#include <cmath>
+#include <fstream>
 #include <mutex>
 #include <optional>
 #include <utility>
@@ -10,9 +13,11 @@
 #include "libatlas/core/background.h"
 #include "libatlas/core/clock.h"
 #include "libatlas/core/parallel.h"
+#include "libatlas/core/write_error.h"
 #include "libatlas/exporters/html/light_page.h"
 #include "libatlas/exporters/world.h"
 #include "libatlas/image/image_io.h"
+#include "libatlas/image/webp.h"
 
 namespace atlas {
 namespace {
@@ -33,6 +38,17 @@ std::vector<std::vector<ChartPlacement>> placements_by_page(const PageLayout& la
   std::vector<std::vector<ChartPlacement>> pages(layout.pages.size());
   for (const ChartPlacement& p : layout.placements) pages[std::size_t(p.page)].push_back(p);
   return pages;
+}
+
+// Returns decibels over all channels; of equal images, those of an error below half a step in one
+// texel.
+double psnr_of(const Image8& a, const Image8& b) {
+  double sum = 0.25;
+  for (std::size_t i = 0; i < a.texels.size(); ++i) {
+    const double d = double(a.texels[i]) - double(b.texels[i]);
+    sum += d * d;
+  }
+  return 10 * std::log10(255.0 * 255.0 * double(a.texels.size()) / sum);
 }
 
 // The pages that are baked at once take at most this many bytes together, and so do those that wait
@@ -93,12 +109,6 @@ class PageBaker {
 
   bool floats() const { return options_.exr || options_.linear; }
 
-  // Writes what viewers look up.
-  Status write_image(const std::filesystem::path& path, const BakedPage& page) const {
-    if (options_.linear) return write_light_page(path, page.linear);
-    return write_png(path, page.display, {options_.png_compression, true});
-  }
-
   // Returns whether the caller's thread writes images, instead of threads in the background.
   bool writes_itself() const { return pages_.size() < 2 || context_.threads == 1; }
 
@@ -114,11 +124,11 @@ class PageBaker {
   }
 
   Status add_pages(std::size_t first, std::size_t count, Background& writing) {
-    std::vector<std::optional<Result<BakedPage>>> baked(count);
+    std::vector<std::optional<Result<FinishedPage>>> baked(count);
     {
       const BookedTime watch(wall_seconds, result_.bake_wall);
       parallel_for(context_, count, 1,
-                   [&](std::size_t i, std::size_t) { baked[i].emplace(bake(first + i)); });
+                   [&](std::size_t i, std::size_t) { baked[i].emplace(finish(first + i)); });
     }
     if (context_.cancelled()) return Status::cancelled();
     for (std::size_t i = 0; i < count; ++i) {
@@ -128,31 +138,32 @@ class PageBaker {
     return {};
   }
 
-  Status add_page(std::size_t p, BakedPage baked, Background& writing) {
-    result_.covered_texels += baked.covered_texels;
+  Status add_page(std::size_t p, FinishedPage baked, Background& writing) {
+    result_.covered_texels += baked.page.covered_texels;
     if (meter_) {
       const BookedTime cpu_watch(own_cpu_seconds, result_.measure_cpu);
       const BookedTime wall_watch(wall_seconds, result_.measure_wall);
       const auto page = std::int32_t(p);
-      options_.linear ? meter_->add_light_page(page, baked.linear)
-                      : meter_->add_page(page, baked.display);
+      options_.linear ? meter_->add_light_page(page, baked.page.linear)
+                      : meter_->add_page(page, baked.page.display);
       const Extent& size = layout_.pages[p];
       result_.error.push_back(meter_->cells(page, size.width, size.height, kErrorCell));
     }
-    const std::string name = page_name(options_.target, p) + (options_.linear ? ".light" : ".png");
+    const std::string name = page_name(options_.target, p) +
+                             (options_.linear ? ".light" : page_extension(options_.texture_format));
     std::filesystem::path target = options_.target.parent_path() / name;
     const std::filesystem::path image = files_.path_for(target);
     const std::filesystem::path exr =
         options_.exr ? files_.path_for(target.replace_extension(".exr")) : "";
     result_.image_sources.push_back(image);
     result_.pages.push_back({name, layout_.pages[p].width, layout_.pages[p].height,
-                             std::uint32_t(pages_[p].size()), 0});
+                             std::uint32_t(pages_[p].size()), 0, baked.psnr});
     const BookedTime watch(wall_seconds, result_.write_wall);
     if (p + 1 == pages_.size()) only_images_are_left();
-    return writing.add([this, p, image, exr, page = std::move(baked)]() -> Status {
+    return writing.add([this, p, image, exr, baked = std::move(baked)]() -> Status {
       const BookedTime own_watch(own_cpu_seconds, write_cpu_[p]);
-      if (Status s = write_image(image, page); !s.ok()) return s;
-      if (Status s = exr.empty() ? Status() : write_exr(exr, page.linear); !s.ok()) return s;
+      if (Status s = write_image(baked, image); !s.ok()) return s;
+      if (Status s = exr.empty() ? Status() : write_exr(exr, baked.page.linear); !s.ok()) return s;
       const std::lock_guard lock(reporting_);
       ++written_;
       if (baked_) report_images();
@@ -169,6 +180,42 @@ class PageBaker {
   }
 
   void report_images() const { images_.report("images", double(written_) / double(pages_.size())); }
+
+  // A page, and its file if that is WebP. A lossy one shows what its file does.
+  struct FinishedPage {
+    BakedPage page = {};
+    std::vector<std::uint8_t> webp = {};
+    std::optional<double> psnr = {};
+  };
+
+  Result<FinishedPage> finish(std::size_t p) {
+    Result<BakedPage> baked = bake(p);
+    if (!baked.ok()) return baked.status();
+    FinishedPage finished{std::move(*baked)};
+    if (options_.linear || options_.texture_format != TextureFormat::webp) return finished;
+    Image8& display = finished.page.display;
+    auto webp = encode_webp(display, {options_.webp_quality});
+    if (!webp.ok()) return webp.status();
+    finished.webp = std::move(*webp);
+    if (options_.webp_quality == 0) return finished;
+    Result<Image8> shown = decode_webp(finished.webp, page_name(options_.target, p));
+    if (!shown.ok()) return shown.status();
+    finished.psnr = psnr_of(display, *shown);
+    display = std::move(*shown);
+    return finished;
+  }
+
+  Status write_image(const FinishedPage& baked, const std::filesystem::path& path) const {
+    if (options_.linear) return write_light_page(path, baked.page.linear);
+    if (options_.texture_format == TextureFormat::png)
+      return write_png(path, baked.page.display, {options_.png_compression, true});
+    std::ofstream file(path, std::ios::binary);
+    file.write(reinterpret_cast<const char*>(baked.webp.data()),
+               std::streamsize(baked.webp.size()));
+    file.close();
+    if (file) return {};
+    return {ErrorCode::io, fmt::format("{}: {}", path.string(), write_error(errno))};
+  }
 
   Result<BakedPage> bake(std::size_t p) {
     Context context = context_;

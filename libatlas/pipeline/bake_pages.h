@@ -39,10 +39,10 @@ struct PagesToBake {
 };
 
 // Bakes the pages and writes their images, which are named after the target (safe_file_name):
-// world.wrl gives world_0.png, world_1.png, ... and, with ExportOptions::exr, world_0.exr, ...
-// With ExportOptions::linear, they are pages of light (write_light_page) instead of PNG files.
-// Their temporary names are collected in `files`. `images` gets the progress of the images that are
-// still to be written when all pages are baked.
+// world.wrl gives world_0.png, world_1.png, ... (.webp, if asked for; with ExportOptions::linear,
+// pages of light, see write_light_page()) and, with ExportOptions::exr, world_0.exr, ... Their
+// temporary names are collected in `files`. `images` gets the progress of the images that are still
+// to be written when all pages are baked.
 Result<BakedPages> bake_pages(const PagesToBake& pages, AtomicFiles& files, const Context& context,
                               const Context& images);
 

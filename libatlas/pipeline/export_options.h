@@ -25,6 +25,15 @@ struct ExtraFile {
 // Gutters for more mip levels than these would take most of the pages.
 constexpr std::int32_t kMostMipLevels = 5;
 
+// The format of the pages' images for viewers.
+enum class TextureFormat {
+  png,
+  webp,  // smaller; only in glTF (EXT_texture_webp)
+};
+
+// Returns ".png" or ".webp".
+const char* page_extension(TextureFormat format);
+
 struct ExportOptions {
   // The extension chooses the format: .wrl, .wrz, .obj, .gltf, .glb, .html. Images
   // are written beside it, except by the last two.
@@ -89,6 +98,11 @@ struct ExportOptions {
   // For .html: its pages hold the light itself, so that exposure and tone curve can be chosen, and
   // values read, in the browser.
   bool linear = false;
+  TextureFormat texture_format = TextureFormat::png;
+  int webp_quality = 0;  // 1..100: lossy, as WebpOptions::quality; 0: lossless
+  // Packs the mesh of a glTF file, see World::compress_slip. Positions slip by a quarter of
+  // simplify_slip at most.
+  bool compress = false;
   std::int32_t png_compression = 3;  // zlib level 0..9; 1 to 5 are the same (PngOptions::smooth)
 
   bool charts_only = false;  // make charts and uvs only: bake no light, write no image
@@ -107,7 +121,10 @@ struct ExportOptions {
   // Files that appear together with the world, or not at all, such as lists of what it was made
   // from. ExportReport::files does not list them.
   std::vector<ExtraFile> extra_files = {};
-  bool measure_error = true;  // compare the finished pages with the input's light
+  // Also draw the light in false colours, from above and on the pages, as a PNG file. Needs light.
+  std::filesystem::path false_colour = {};
+  bool report_pictures = false;  // make ExportReport::pictures
+  bool measure_error = true;     // compare the finished pages with the input's light
 };
 
 // Checks every range documented above, and those of charts and tone. The message names the field

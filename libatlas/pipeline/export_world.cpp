@@ -12,14 +12,17 @@
 #include "libatlas/core/clock.h"
 #include "libatlas/core/parallel.h"
 #include "libatlas/core/progress.h"
+#include "libatlas/core/srgb.h"
 #include "libatlas/image/image_io.h"
 #include "libatlas/pipeline/advice.h"
 #include "libatlas/pipeline/assemble_world.h"
 #include "libatlas/pipeline/bake_pages.h"
+#include "libatlas/pipeline/false_colour.h"
 #include "libatlas/pipeline/finish_mesh.h"
 #include "libatlas/pipeline/layout_options.h"
 #include "libatlas/pipeline/longest_sides.h"
 #include "libatlas/pipeline/more_mip_levels.h"
+#include "libatlas/pipeline/report_pictures.h"
 #include "libatlas/pipeline/size_textures.h"
 #include "libatlas/pipeline/stage_recorder.h"
 #include "libatlas/pipeline/suit_pages.h"
@@ -166,8 +169,11 @@ class Export {
     report_.luminance = *statistics;
     report_.tone = tone_;
     report_.exposure_white = double(tone_.white) / tone_.scale;
-    record_.finish({scene_.triangle_count(), 1, "tone curve",
-                    fmt::format("white {:.4g}", report_.exposure_white)});
+    const auto median = static_cast<float>(report_.luminance.median);
+    record_.finish(
+        {scene_.triangle_count(), 1, "tone curve",
+         fmt::format("white {:.4g}, the median {:.4g} shown as {} of 255", report_.exposure_white,
+                     median, quantize8(tone_.display({median, median, median}).y))});
     return {};
   }
 
@@ -283,6 +289,10 @@ class Export {
     if (charts_.charts.size() > uncut)
       quality += fmt::format(", cut into {}", charts_.charts.size());
     record_.finish({uncut, layout_.pages.size(), "pages", quality});
+    for (const ChartPlacement& p : layout_.placements) {
+      report_.chart_pages.push_back(p.page);
+      report_.chart_densities.push_back((p.texels_per_unit.x + p.texels_per_unit.y) / 2);
+    }
     if (!plan_.bake) {
       for (const Extent& page : layout_.pages) {
         report_.pages.push_back({"", page.width, page.height, 0, 0});
@@ -352,6 +362,20 @@ class Export {
     return {};
   }
 
+  // Draws the pictures that were asked for, while the pages' images are still at hand.
+  Status draw() {
+    if (options_.report_pictures) {
+      Result<ReportPictures> pictures =
+          report_pictures({charts_, layout_, image_sources_, report_.fidelity.worst}, context_);
+      if (!pictures.ok()) return files_.told_by_target(pictures.status());
+      report_.pictures = std::move(*pictures);
+    }
+    if (options_.false_colour.empty()) return {};
+    return files_.told_by_target(
+        write_png(files_.path_for(options_.false_colour),
+                  draw_false_colours(scene_, options_.up, charts_, layout_), {}));
+  }
+
   Status finish() {
     const Context& context = record_.begin("uvs");
     const SimplifiedMesh* coarse = coarse_ ? &*coarse_ : nullptr;
@@ -365,6 +389,7 @@ class Export {
 
   Status write() {
     const Context& context = record_.begin("writing");
+    if (Status s = draw(); !s.ok()) return s;
     ExportToWrite made{scene_,
                        options_,
                        charts_,

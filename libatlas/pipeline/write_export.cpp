@@ -29,6 +29,9 @@
 namespace atlas {
 namespace {
 
+// The share of the coarser mesh's slip by which packed positions may slip, too.
+constexpr double kSlipOfPacking = 0.25;
+
 // Returns what each triangle shows on average, as display values. Three samples are enough for the
 // choice of a viewpoint.
 std::vector<std::uint8_t> shown_light(const ExportToWrite& made, const ToneMapping& tone,
@@ -138,6 +141,8 @@ World make_world(ExportToWrite& made, ExportReport& report, const Context& conte
   world.up = options.up;
   world.title = options.target.stem().string();
   world.metres_per_unit = made.scene.metres_per_unit;
+  if (options.compress)
+    world.compress_slip = kSlipOfPacking * options.simplify_slip * report.packed_texel;
   if (options.keep_scene) {
     keep_scene(made.scene, made.charts, world);
     world.uv_set = options.uv_set;

@@ -106,6 +106,16 @@ void join_corners(std::span<const std::uint32_t> indices, std::span<const Vec2f>
 
 }  // namespace
 
+UnwrapOptions lightmap_options(double texels_per_metre, double metres_per_unit) {
+  UnwrapOptions options;
+  options.texels_per_unit = texels_per_metre * metres_per_unit;
+  options.mip_levels = 2;
+  options.padding = gutter_pad(options.mip_levels) + 1;
+  options.square = true;
+  options.part_gaps = true;
+  return options;
+}
+
 Result<UnwrappedMesh> unwrap_mesh(const MeshView& mesh, const UnwrapOptions& options,
                                   const Context& context) {
   if (Status s = check_options(options); !s.ok()) return s;

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "libatlas/core/bounds.h"
+#include "libatlas/core/file_extension.h"
 #include "libatlas/core/glm_bridge.h"
 #include "libatlas/exporters/html/mesh_columns.h"
 #include "libatlas/exporters/html/page_text.h"
@@ -166,7 +167,10 @@ json light_json(const PageLight& light) {
 
 json page_json(const World& world, const Page& page) {
   json entry = json::object();
-  if (!page.image.empty()) entry["type"] = world.light ? kLightType : "image/png";
+  if (!page.image.empty()) {
+    const bool webp = lower_extension(page.image) == ".webp";
+    entry["type"] = world.light ? kLightType : webp ? "image/webp" : "image/png";
+  }
   if (!page.error.empty()) {
     json cells = json::array();  // rounded: the page shows colours
     for (const float e : page.error) cells.push_back(e < 0 ? -1 : std::lround(10000 * e));
