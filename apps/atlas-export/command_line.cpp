@@ -46,6 +46,7 @@ void add_scene_options(CLI::App& app, ExportCommand& command, RawText& raw) {
       ->transform(choices<Up>({{"y", Up::y}, {"z", Up::z}}))
       ->type_name("NAME")
       ->default_str("y");
+  add_trust_options(app, command.read);
 }
 
 void add_chart_options(CLI::App& app, ExportCommand& command) {
@@ -120,9 +121,11 @@ void add_texture_options(CLI::App& app, ExportOptions& options, RawText& raw) {
                  "Graphics memory for all pages, e.g. 800MB, without a unit bytes: sets --atlases "
                  "from --atlas-size")
       ->excludes("--atlases");
-  app.add_option("--texel", raw.texel,
-                 "Length of a texel on the real surface, e.g. 5mm, without a unit metres; default: "
-                 "what the pages can hold, within 1 to 10 mm, and finer for fine scans");
+  app.add_option(
+      "--texel", raw.texel,
+      "Length of a texel on the real surface, e.g. 5mm, without a unit metres; default: "
+      "what the pages can hold, within 1 to 10 mm, and finer for fine scans; uvs without "
+      "light get a page as large as it needs");
   add_off_flag(app, "--ignore-texture-density", options.follow_textures,
                "Do not refine where the diffuse texture is finer than --texel");
   app.add_option("--threshold", options.threshold,
@@ -326,6 +329,7 @@ std::optional<ExportCommand> parse_export_command(int argc, char** argv, int& ex
   const bool as_written = command.options.keep_scene && command.options.charts_only &&
                           lower_extension(command.options.target) == ".obj";
   command.read.srgb_colours = command.options.quantity == Quantity::colour && !as_written;
+  command.options.colours_are_light = app.count("--quantity") > 0;
   command.options.larger_plain_page = app.count("--atlas-size") == 0;
   // Pages of HTML are to be small.
   if (lower_extension(command.options.target) == ".html" && app.count("--texture-format") == 0 &&

@@ -97,6 +97,13 @@ class PageBaker {
   }
 
  private:
+  // A page, and its file if that is WebP. A lossy one shows what its file does.
+  struct FinishedPage {
+    BakedPage page = {};
+    std::vector<std::uint8_t> webp = {};
+    std::optional<double> psnr = {};
+  };
+
   Status draw_samples() {
     if (!options_.measure_error) return {};
     const BookedTime cpu_watch(own_cpu_seconds, result_.measure_cpu);
@@ -180,13 +187,6 @@ class PageBaker {
   }
 
   void report_images() const { images_.report("images", double(written_) / double(pages_.size())); }
-
-  // A page, and its file if that is WebP. A lossy one shows what its file does.
-  struct FinishedPage {
-    BakedPage page = {};
-    std::vector<std::uint8_t> webp = {};
-    std::optional<double> psnr = {};
-  };
 
   Result<FinishedPage> finish(std::size_t p) {
     Result<BakedPage> baked = bake(p);
