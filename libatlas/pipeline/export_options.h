@@ -35,7 +35,8 @@ enum class TextureFormat {
 const char* page_extension(TextureFormat format);
 
 struct ExportOptions {
-  // The extension chooses the format: .wrl, .wrz, .obj, .gltf, .glb. Images are written beside it.
+  // The extension chooses the format: .wrl, .wrz, .obj, .gltf, .glb, .html. Images
+  // are written beside it, except by the last two.
   std::filesystem::path target = {};
 
   // The budget: at most `atlases` (>= 1) pages of at most atlas_size² texels.
@@ -96,6 +97,9 @@ struct ExportOptions {
   double simplify_slip = 0.15;
   Up up = Up::y;
   bool exr = false;  // also write scene-linear OpenEXR pages
+  // For .html: its pages hold the light itself, so that exposure and tone curve can be chosen, and
+  // values read, in the browser.
+  bool linear = false;
   TextureFormat texture_format = TextureFormat::png;
   int webp_quality = 0;  // 1..100: lossy, as WebpOptions::quality; 0: lossless
   // Packs the mesh of a glTF file, see World::compress_slip. Positions slip by a quarter of

@@ -342,6 +342,7 @@ class Export {
     if (!baked.ok()) return files_.told_by_target(baked.status());
     report_.pages = baked->pages;
     image_sources_ = std::move(baked->image_sources);
+    error_ = std::move(baked->error);
     std::uint64_t bytes = 0;
     for (const PageReport& page : baked->pages) {
       bytes += page.image_bytes;
@@ -420,11 +421,17 @@ class Export {
   Status write() {
     const Context& context = record_.begin("writing");
     if (Status s = draw(); !s.ok()) return s;
-    ExportToWrite made{scene_,          options_,
-                       charts_,         layout_,
-                       finished_->mesh, std::move(finished_->uvs),
-                       plan_.bake,      sampler_ ? &*sampler_ : nullptr,
-                       image_sources_,  view_};
+    ExportToWrite made{scene_,
+                       options_,
+                       charts_,
+                       layout_,
+                       finished_->mesh,
+                       std::move(finished_->uvs),
+                       plan_.bake,
+                       sampler_ ? &*sampler_ : nullptr,
+                       image_sources_,
+                       error_,
+                       view_};
     Result<StageOutcome> written = write_export(std::move(made), files_, report_, context);
     if (!written.ok()) return written.status();
     record_.finish(std::move(*written));
@@ -450,6 +457,7 @@ class Export {
   std::optional<SimplifiedMesh> coarse_;
   std::optional<FinishedMesh> finished_;
   std::vector<std::filesystem::path> image_sources_;  // where the pages' images lie until commit
+  std::vector<FidelityMeter::Cells> error_;           // one per page, or none
   AtomicFiles files_;
   ExportReport report_;
   StageRecorder record_;

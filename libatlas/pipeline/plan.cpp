@@ -232,7 +232,7 @@ TextureOptions texture_options(const ExportPlan& plan, const ExportReport& repor
   texture.follow_textures = options.follow_textures;
   texture.texture_sampling = texture_sampling(options);
   texture.threshold = options.threshold;
-  if (options.exr) texture.brightest = report.luminance.maximum;
+  if (options.exr || options.linear) texture.brightest = report.luminance.maximum;
   texture.min_side = options.min_side;
   texture.max_side = options.atlas_size - 2 * gutter_pad(options.mip_levels);
   return texture;
