@@ -373,9 +373,9 @@ TEST(Export, CancelledInAnyStageWritesNothing) {
 
 // The ranges of its own options are those of export_options_test.cpp.
 TEST(Export, RefusesOptionsOutOfRangeBeforeItWrites) {
-  using Change = std::function<void(ExportOptions&)>;
+  using OptionChange = std::function<void(ExportOptions&)>;
   const auto nan = std::numeric_limits<double>::quiet_NaN();
-  const std::vector<std::pair<const char*, Change>> changes{
+  const std::vector<std::pair<const char*, OptionChange>> changes{
       {"ExportOptions::atlases", [](ExportOptions& o) { o.atlases = 0; }},
       {"ChartOptions::cone_degrees", [=](ExportOptions& o) { o.charts.cone_degrees = nan; }},
       {"ChartOptions::max_stretch", [](ExportOptions& o) { o.charts.max_stretch = 1; }},

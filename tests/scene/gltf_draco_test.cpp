@@ -179,17 +179,17 @@ TEST(GltfDraco, PrimitivesMayShareAccessors) {
 // The same data may be decoded several times, but not without a limit.
 TEST(GltfDraco, TheSumOfDecodedDataIsLimited) {
   const TempFolder folder;
-  constexpr std::uint32_t kSide = 100;
+  constexpr std::uint32_t kGridSide = 100;
   std::vector<float> positions;
   DracoSource source;
   source.sequential = false;
   source.bits = 8;
-  source.points = kSide * kSide;
+  source.points = kGridSide * kGridSide;
   for (std::uint32_t p = 0; p < source.points; ++p) {
-    const std::uint32_t x = p % kSide, y = p / kSide;
+    const std::uint32_t x = p % kGridSide, y = p / kGridSide;
     positions.insert(positions.end(), {float(x), float(y), 0});
-    if (x + 1 < kSide && y + 1 < kSide)
-      for (const std::uint32_t corner : {0u, 1u, kSide, kSide, 1u, kSide + 1})
+    if (x + 1 < kGridSide && y + 1 < kGridSide)
+      for (const std::uint32_t corner : {0u, 1u, kGridSide, kGridSide, 1u, kGridSide + 1})
         source.indices.push_back(p + corner);
   }
   source.attributes = {{kPosition, 3, draco::DT_FLOAT32, positions.data()}};

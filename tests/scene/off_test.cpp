@@ -13,13 +13,13 @@ namespace {
 
 using test::TempFolder;
 
-Result<LoadedScene> load(const std::string& bytes) {
+Result<LoadedScene> load_off(const std::string& bytes) {
   const TempFolder folder;
   return read_scene(folder.write("a.off", bytes), {}, {});
 }
 
 Scene scene_of(const std::string& bytes) {
-  auto loaded = load(bytes);
+  auto loaded = load_off(bytes);
   EXPECT_TRUE(loaded.ok()) << loaded.status().message();
   return loaded.ok() ? std::move(loaded->scene) : Scene{};
 }
@@ -165,8 +165,8 @@ TEST(Off, VerticesHaveAllTheirNumbers) {
   const auto taken = [](const std::string& header, int numbers) {
     std::string vertex;
     for (int i = 0; i < numbers; ++i) vertex += "1 ";
-    const auto loaded = load(header + "\n3 1 0\n" + vertex + "\n" + vertex + "\n" + vertex +
-                             "\n3 0 1 2\n# " + std::string(40, '-') + "\n");
+    const auto loaded = load_off(header + "\n3 1 0\n" + vertex + "\n" + vertex + "\n" + vertex +
+                                 "\n3 0 1 2\n# " + std::string(40, '-') + "\n");
     if (!loaded.ok()) {
       EXPECT_NE(loaded.status().message().find("it has " + std::to_string(numbers)),
                 std::string::npos)
@@ -185,7 +185,7 @@ TEST(Off, VerticesHaveAllTheirNumbers) {
 }
 
 TEST(Off, DefectsAreCounted) {
-  const auto loaded = load(
+  const auto loaded = load_off(
       "OFF\n4 5 0\n0 0 0 9 9\n2 0 0\nnan 3 0\n0 3 0\n3 0 1 3\n3 0 1 2\n3 0 1 4\n3 0 1 -1\n2 0 1\n"
       "3 0 1 3\n");
   ASSERT_TRUE(loaded.ok()) << loaded.status().message();
@@ -293,7 +293,7 @@ TEST_P(BinaryOff, DefectsAreNamedByTheirNumbers) {
   face(3);
   face(4);
   face(1);
-  const auto loaded = load(bytes_);
+  const auto loaded = load_off(bytes_);
   ASSERT_TRUE(loaded.ok()) << loaded.status().message();
   EXPECT_EQ(loaded->scene.triangle_count(), 1u);
   const std::vector<std::string> lines = loaded->defects.lines();
@@ -313,7 +313,7 @@ TEST_P(BinaryOff, FacesOfTwoCornersNeedCountedColours) {
   if (GetParam()) word(0);
   for (const std::uint32_t v : {2u, 0u, 1u}) word(v);
   if (GetParam()) word(0);
-  const auto loaded = load(bytes_);
+  const auto loaded = load_off(bytes_);
   ASSERT_EQ(loaded.ok(), GetParam());
   if (GetParam()) {
     EXPECT_EQ(loaded->defects.count(DefectKind::too_few_corners), 1u);
@@ -325,14 +325,14 @@ TEST_P(BinaryOff, BytesAfterTheLastFaceAreRefused) {
   square(false);
   for (int more = 1; more < 9; ++more) {
     bytes_ += 'x';
-    EXPECT_EQ(load(bytes_).status().code(), ErrorCode::bad_input) << more;
+    EXPECT_EQ(load_off(bytes_).status().code(), ErrorCode::bad_input) << more;
   }
 }
 
 TEST_P(BinaryOff, EveryTruncationIsNoticed) {
   square(true);
   for (std::size_t length = 0; length < bytes_.size(); ++length) {
-    const auto loaded = load(bytes_.substr(0, length));
+    const auto loaded = load_off(bytes_.substr(0, length));
     ASSERT_FALSE(loaded.ok()) << length;
     EXPECT_EQ(loaded.status().code(), ErrorCode::bad_input);
   }
@@ -344,7 +344,7 @@ INSTANTIATE_TEST_SUITE_P(Both, BinaryOff, ::testing::Bool(),
 TEST(Off, EveryTruncationIsNoticed) {
   const std::string bytes = "COFF\n3 1 0\n0 0 0 1 2 3\n1 0 0 1 2 3\n0 1 0 1 2 3\n3 0 1 2\n";
   for (std::size_t length = 0; length + 1 < bytes.size(); ++length) {
-    const auto loaded = load(bytes.substr(0, length));
+    const auto loaded = load_off(bytes.substr(0, length));
     ASSERT_FALSE(loaded.ok()) << length;
     EXPECT_NE(loaded.status().message().find("a.off"), std::string::npos);
   }
@@ -361,7 +361,7 @@ TEST(Off, RandomDamageNeverCrashes) {
     for (int hits = 1 + int(random() % 3); hits > 0; --hits) {
       bytes[random() % bytes.size()] = round % 2 ? char(random()) : char('0' + random() % 10);
     }
-    const auto loaded = load(bytes);
+    const auto loaded = load_off(bytes);
     if (!loaded.ok()) continue;
     ++survived;
     ASSERT_TRUE(test::sound(loaded->scene));
