@@ -67,6 +67,7 @@ std::string check_counts(const DracoBytes& data) {
     return "ends too early";
   for (std::uint32_t& count : counts)
     if (!draco::DecodeVarint(&count, &buffer)) return "ends too early";
+  if (!data.limited) return "";
   const std::size_t announced = std::max(counts[0], counts[1]);
   if (announced > std::max(bytes.size() * kMostExpansion, kFew))
     return "is too short for what it should hold";
@@ -155,7 +156,7 @@ DracoBudget::DracoBudget(std::size_t file_bytes)
 
 bool DracoBudget::take(std::size_t bytes) {
   if (bytes > left_) return false;
-  left_ -= bytes;
+  if (limited()) left_ -= bytes;
   return true;
 }
 

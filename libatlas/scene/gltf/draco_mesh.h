@@ -33,6 +33,7 @@ class DracoBudget {
   // For any number of bytes.
   DracoBudget() : left_(std::numeric_limits<std::size_t>::max()) {}
 
+  bool limited() const { return left_ != std::numeric_limits<std::size_t>::max(); }
   // Returns false, and takes nothing, if less is left.
   bool take(std::size_t bytes);
 
@@ -45,6 +46,7 @@ class DracoBudget {
 struct DracoBytes {
   std::span<const unsigned char> bytes;
   std::size_t promised = 0;
+  bool limited = true;  // false: any counts are believed (ReadOptions::limits)
 };
 
 // Decodes a mesh of Draco's bitstream 2.2, the one that glTF allows, and the attributes that are

@@ -203,7 +203,8 @@ std::string decode_part(const GltfDracoPart& part, tinygltf::Model& model, Fille
                          target.accessor);
   }
   DracoMesh mesh;
-  if (std::string wrong = decode_draco({*bytes, promised(part, model)}, asked, mesh, budget);
+  if (std::string wrong =
+          decode_draco({*bytes, promised(part, model), budget.limited()}, asked, mesh, budget);
       !wrong.empty())
     return wrong;
   for (std::size_t i = 0; i < asked.size(); ++i) {
