@@ -3,13 +3,17 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <charconv>
 #include <string>
+#include <string_view>
+#include <system_error>
 
 #include "apps/common/options.h"
 #include "apps/common/program.h"
 #include "apps/common/quantity.h"
 #include "libatlas/core/counted.h"
 #include "libatlas/core/file_extension.h"
+#include "libatlas/image/webp.h"
 
 namespace atlas::app {
 namespace {
@@ -25,7 +29,7 @@ void add_scene_options(CLI::App& app, ExportCommand& command, RawText& raw) {
                  "Scene: .obj, .ply, .off, .stl, .gltf, .glb, or a .wrl or .wrz of this program")
       ->required();
   app.add_option("-o,--output", command.options.target,
-                 "World to write: .wrl, .wrz, .obj, .gltf or .glb; --plan needs none");
+                 "World to write: .html, .wrl, .wrz, .obj, .gltf or .glb; --plan needs none");
   app.add_option("--unit", raw.unit, "Length of one scene unit: m, cm, mm, in, ft, km or metres")
       ->capture_default_str();
   app.add_option("--illumination", command.read.illumination_file,
@@ -42,6 +46,7 @@ void add_scene_options(CLI::App& app, ExportCommand& command, RawText& raw) {
       ->transform(choices<Up>({{"y", Up::y}, {"z", Up::z}}))
       ->type_name("NAME")
       ->default_str("y");
+  add_trust_options(app, command.read);
 }
 
 void add_chart_options(CLI::App& app, ExportCommand& command) {
@@ -116,9 +121,11 @@ void add_texture_options(CLI::App& app, ExportOptions& options, RawText& raw) {
                  "Graphics memory for all pages, e.g. 800MB, without a unit bytes: sets --atlases "
                  "from --atlas-size")
       ->excludes("--atlases");
-  app.add_option("--texel", raw.texel,
-                 "Length of a texel on the real surface, e.g. 5mm, without a unit metres; default: "
-                 "what the pages can hold, within 1 to 10 mm, and finer for fine scans");
+  app.add_option(
+      "--texel", raw.texel,
+      "Length of a texel on the real surface, e.g. 5mm, without a unit metres; default: "
+      "what the pages can hold, within 1 to 10 mm, and finer for fine scans; uvs without "
+      "light get a page as large as it needs");
   add_off_flag(app, "--ignore-texture-density", options.follow_textures,
                "Do not refine where the diffuse texture is finer than --texel");
   app.add_option("--threshold", options.threshold,
@@ -138,6 +145,16 @@ void add_texture_options(CLI::App& app, ExportOptions& options, RawText& raw) {
   app.add_option("--exposure", options.tone.exposure_stops, "Brighter (+) or darker (-), stops")
       ->capture_default_str()
       ->check(within(-64, 64));
+}
+
+int parse_quality(const std::string& text) {
+  if (text == "lossless") return 0;
+  int quality = 0;
+  const char* end = text.data() + text.size();
+  const auto [read, error] = std::from_chars(text.data(), end, quality);
+  if (error != std::errc() || read != end || quality < 1 || quality > 100)
+    throw CLI::ValidationError("--quality", text + ": give 1..100, or lossless");
+  return quality;
 }
 
 void add_page_options(CLI::App& app, ExportOptions& options) {
@@ -171,6 +188,29 @@ void add_page_options(CLI::App& app, ExportOptions& options) {
       ->check(positive());
   app.add_flag("--exr", options.exr, "Also write scene-linear OpenEXR pages")
       ->excludes("--charts-only");
+  app.add_flag("--linear", options.linear,
+               "Pages of an .html hold the light itself: exposure, tone curve and false colours in "
+               "the browser")
+      ->excludes("--charts-only");
+  CLI::Option* format =
+      app.add_option("--texture-format", options.texture_format,
+                     "Format of the pages' images: png, or webp, which is smaller (.gltf, .glb, "
+                     ".html); unless given, .html has webp of quality 90")
+          ->transform(
+              choices<TextureFormat>({{"png", TextureFormat::png}, {"webp", TextureFormat::webp}}))
+          ->type_name("NAME")
+          ->default_str("png");
+  app.add_option_function<std::string>(
+         "--quality",
+         [&options](const std::string& text) { options.webp_quality = parse_quality(text); },
+         "Of WebP images: 1 (smallest) to 100, or lossless")
+      ->type_name("N|lossless")
+      ->default_str("lossless")
+      ->needs(format);
+  app.add_flag(
+      "--compress", options.compress,
+      "Pack the mesh (EXT_meshopt_compression); positions and uvs of worlds become 16 bits "
+      "where a quarter of --slip allows it (.gltf, .glb)");
   app.add_option("--png-level", options.png_compression, "PNG compression, 0..9; 1 to 5 are one")
       ->capture_default_str()
       ->check(within(0, 9));
@@ -178,8 +218,13 @@ void add_page_options(CLI::App& app, ExportOptions& options) {
 
 void add_run_options(CLI::App& app, ExportCommand& command) {
   const OptionGroup group(app, "Running");
-  app.add_option("--report", command.report,
-                 "Write a JSON report of every stage; with --plan: of the plan");
+  app.add_option("--report", command.reports,
+                 "Write a report of every stage, or with --plan of the plan: a page to read if it "
+                 "ends in .html, else JSON; may be given several times")
+      ->allow_extra_args(false);
+  app.add_option("--false-colour", command.options.false_colour,
+                 "Also draw the light in false colours, from above and on the pages (.png)")
+      ->excludes("--charts-only");
   app.add_option("--depfile", command.depfile,
                  "Also write a rule for make and ninja that lists every file that was read");
   app.add_flag("--plan", command.plan_only, "Print what would run and why, and stop");
@@ -190,6 +235,17 @@ void add_run_options(CLI::App& app, ExportCommand& command) {
       ->capture_default_str();
 }
 
+// Returns a word as a shell takes it.
+std::string quoted(const std::string& word) {
+  constexpr std::string_view kPlain =
+      "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-./=:,+%@";
+  if (!word.empty() && word.find_first_not_of(kPlain) == std::string::npos) return word;
+  std::string out = "'";
+  for (const char c : word) out += c == '\'' ? std::string("'\\''") : std::string(1, c);
+  return out + "'";
+}
+
+constexpr int kHtmlQuality = 90;                // of WebP
 constexpr double kMostPages = 1e6;              // the limit of --atlases
 constexpr double kBytesPerTexel = 4.0 * 4 / 3;  // RGBA8 and its mip chain
 
@@ -233,6 +289,10 @@ std::optional<std::string> interpret(const RawText& raw, ExportCommand& command)
 
 }  // namespace
 
+bool is_page(const std::filesystem::path& report) {
+  return lower_extension(report) == ".html";
+}
+
 std::optional<ExportCommand> parse_export_command(int argc, char** argv, int& exit_code) {
   CLI::App app(
       "Turns a scene whose vertices carry illumination into a walkable world with texture atlases.",
@@ -255,17 +315,28 @@ std::optional<ExportCommand> parse_export_command(int argc, char** argv, int& ex
     print_error("atlas-export", "--output is required (--help lists the options)");
     return std::nullopt;
   }
-  if (command.plan_only && command.quiet && command.report.empty()) {
+  if (command.plan_only && command.quiet && command.reports.empty()) {
     print_error("atlas-export",
                 "--plan with --quiet tells nothing (leave one out, or add --report)");
     return std::nullopt;
   }
+  for (int i = 0; i < argc; ++i) command.words += (i > 0 ? " " : "") + quoted(argv[i]);
+  command.option_values = app.config_to_str(true, false);
+  command.options.report_pictures =
+      !command.plan_only && std::any_of(command.reports.begin(), command.reports.end(), is_page);
   // An OBJ that keeps the scene has the colours of its vertices as the scene's file has them,
   // unless they become a lightmap.
   const bool as_written = command.options.keep_scene && command.options.charts_only &&
                           lower_extension(command.options.target) == ".obj";
   command.read.srgb_colours = command.options.quantity == Quantity::colour && !as_written;
+  command.options.colours_are_light = app.count("--quantity") > 0;
   command.options.larger_plain_page = app.count("--atlas-size") == 0;
+  // Pages of HTML are to be small.
+  if (lower_extension(command.options.target) == ".html" && app.count("--texture-format") == 0 &&
+      command.options.atlas_size <= kLongestWebpSide) {
+    command.options.texture_format = TextureFormat::webp;
+    command.options.webp_quality = kHtmlQuality;
+  }
   const bool asked = app.count("--atlases") > 0;
   if (asked) command.options.plain_pages = command.options.atlases;
   if (asked || app.count("--memory") > 0) command.options.lightmap_pages = command.options.atlases;

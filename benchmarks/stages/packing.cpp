@@ -38,6 +38,7 @@ void bench_packing(const StageRun& run) {
     row.size_in = densities.size();
     row.unit = "charts -> pages";
     LayoutOptions options;
+    options.alignment = 4;
     options.pages = pages;
     options.page_size = staged.settings.page_size;
     options.padding = gutter_pad(2);

@@ -61,6 +61,7 @@ Status Staged::need_layout() {
   if (layout) return {};
   if (const Status status = need_textures(); !status.ok()) return status;
   LayoutOptions options;
+  options.alignment = 4;
   options.pages = settings.pages;
   options.page_size = settings.page_size;
   options.padding = gutter_pad(2);

@@ -31,22 +31,48 @@ struct Viewpoint {
 
 struct Page {
   std::string image = {};  // file name beside the world, see safe_file_name(); empty: no texture
-  // Path of the finished image while the world is written. Only .glb needs it, to embed the image.
+  // Path of the finished image while the world is written, .png or, in glTF and .html, .webp. Only
+  // .glb and .html need it, to embed the image.
   std::filesystem::path image_source = {};
   std::vector<std::uint32_t> indices = {};     // 3 per triangle, into World::positions
   std::vector<std::uint32_t> uv_indices = {};  // 3 per triangle, into World::uvs
   // 1 per triangle, or empty: whether it is seen from its front only, where its corners run
   // counter-clockwise. All others are seen from both sides. OBJ cannot tell them apart.
   std::vector<bool> one_sided = {};
+  // Only .html shows the following. The chart of each triangle, or empty.
+  std::vector<std::uint32_t> charts = {};
+  // The root mean square error of display values, 0..1, in cells of equal size that divide the page
+  // into error_columns x rows, row 0 at the bottom; below 0 where it is unknown. Empty: not
+  // measured.
+  std::vector<float> error = {};
+  std::size_t error_columns = 0;
+};
+
+// One of the curves that show pages of light, as numbers of ToneMapping (texture/tone.h).
+struct ShownCurve {
+  std::string name = {};  // tone_operator_name()
+  double scale = 1, white = 1;
+  double parameter[4] = {0, 0, 0, 0};
+  double offset[3] = {0, 0, 0};
+};
+
+// What pages mean that hold the light itself (see html/light_page.h) instead of display values.
+struct PageLight {
+  // What the scene's vertices carry: "illuminance" (lx), then the pages hold it times the
+  // reflectance; "luminance" (cd/m²) or "colour", then the pages hold just that.
+  std::string quantity = {};
+  std::vector<ShownCurve> curves = {};  // at least one; the first is shown at the beginning
+  // Of each chart: its diffuse reflectance, or 0 where a texture or several materials vary it.
+  std::vector<Vec3f> reflectance = {};
 };
 
 // The pages with the light of a scene that is kept, addressed by the world's uvs.
 struct Lightmap {
-  // File names beside the world, one a page: .png files, sRGB-encoded, and if asked for .exr files
-  // of the light itself.
+  // File names beside the world, one a page: .png or .webp files, sRGB-encoded, and if asked for
+  // .exr files of the light itself.
   std::vector<std::string> images = {}, linear = {};
-  // The light that the .png shows as white, in the unit of Scene::illumination; 0: it does not grow
-  // in proportion to light, because a tone curve bends it.
+  // The light that the former show as white, in the unit of Scene::illumination; 0: it does not
+  // grow in proportion to light, because a tone curve bends it.
   double white = 0;
   std::vector<std::uint32_t> triangle_page = {};  // 1 per triangle; empty: all are on the first
 };
@@ -72,11 +98,17 @@ struct World {
   // For `scene` in glTF: the new uvs become the set TEXCOORD_<uv_set>, 1..7, in place of what it
   // holds. 0: the first set that is free. OBJ has one set and ignores this.
   int uv_set = 0;
+  // For glTF: packs attributes and indices (EXT_meshopt_compression). In a world without `scene`,
+  // positions become whole numbers of 16 bits (KHR_mesh_quantization) if that moves none by more
+  // than this, in scene units, along an axis, and so do uvs of pages with images. Empty: plain.
+  std::optional<double> compress_slip = {};
   // For `scene`: with a lightmap, vertices are written without light, by which viewers would
   // multiply it. glTF names it as asset.extras.lightmap (images, linear, texCoord and white), and
   // the page of a primitive, if there are several, as its extras.lightmap. OBJ names it in a
   // comment, and has only one page.
   std::optional<Lightmap> lightmap = {};
+  // Only .html: set if the pages' images are files of write_light_page().
+  std::optional<PageLight> light = {};
 };
 
 struct WorldFile {
@@ -128,11 +160,11 @@ Result<WorldFile> write_obj(const World& world, const std::filesystem::path& pat
                             AtomicFiles& files, const Context& context);
 
 // Writes glTF 2.0: a .glb with everything embedded, or a .gltf with a .bin beside it. Materials
-// with an image are KHR_materials_unlit and double-sided, except for those of Page::one_sided,
-// which are primitives of their own; the root node turns the scene's up axis to +Y, scales to
-// metres and adds the origin, since glTF prescribes axis and unit. An origin farther from zero than
-// 128 times the world's size is added by a node above all others, kFarOriginNode: engines that hold
-// single floats need it moved to zero.
+// with an image (a .webp by EXT_texture_webp, which viewers then must know) are KHR_materials_unlit
+// and double-sided, except for those of Page::one_sided, which are primitives of their own; the
+// root node turns the scene's up axis to +Y, scales to metres and adds the origin, since glTF
+// prescribes axis and unit. An origin farther from zero than 128 times the world's size is added by
+// a node above all others, kFarOriginNode: engines that hold single floats need it moved to zero.
 //
 // If World::scene has a source (Scene::source), that file is written again: its nodes, materials,
 // attributes, skins and animations stay as they are. The new uvs are in World::uv_set, else in the
@@ -151,11 +183,21 @@ Result<WorldFile> write_obj(const World& world, const std::filesystem::path& pat
 Result<WorldFile> write_gltf(const World& world, const std::filesystem::path& path,
                              AtomicFiles& files, const Context& context);
 
+// Writes a page of HTML that shows the world in a browser by itself: geometry, pages and viewer are
+// in this one file, which loads nothing. World::scene is refused (bad_option). Positions are
+// rounded to half a millimetre where the viewpoint is inside, else to a 65535th of the box; uvs to
+// a 32nd of a texel of 2048. docs/formats.md describes the data, which scripts can read as well.
+Result<WorldFile> write_html(const World& world, const std::filesystem::path& path,
+                             AtomicFiles& files, const Context& context);
+
 // Calls the writer for the extension of `path`. check_world_extension() refuses extensions that
 // have no writer (bad_option).
 Result<WorldFile> write_world(const World& world, const std::filesystem::path& path,
                               AtomicFiles& files, const Context& context);
 Status check_world_extension(const std::filesystem::path& path);
+
+// Returns whether a world of this extension can be compressed and can have images of WebP.
+bool holds_compressed(const std::filesystem::path& path);
 
 // Returns whether a world of this extension can keep World::scene; the writers of the others refuse
 // it (bad_option).
@@ -173,6 +215,9 @@ bool holds_viewpoint(const std::filesystem::path& path);
 
 // Returns whether a world of this extension holds its images itself: none is written beside it.
 bool embeds_images(const std::filesystem::path& path);
+
+// Returns whether a world of this extension can hold pages of light (World::light).
+bool holds_light(const std::filesystem::path& path);
 
 // Returns the file that is written beside the world besides images, .mtl or .bin; empty if there is
 // none.

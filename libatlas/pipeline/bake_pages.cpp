@@ -3,6 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cerrno>
+#include <cmath>
+#include <fstream>
 #include <mutex>
 #include <optional>
 #include <utility>
@@ -10,8 +13,11 @@
 #include "libatlas/core/background.h"
 #include "libatlas/core/clock.h"
 #include "libatlas/core/parallel.h"
+#include "libatlas/core/write_error.h"
+#include "libatlas/exporters/html/light_page.h"
 #include "libatlas/exporters/world.h"
 #include "libatlas/image/image_io.h"
+#include "libatlas/image/webp.h"
 
 namespace atlas {
 namespace {
@@ -34,9 +40,22 @@ std::vector<std::vector<ChartPlacement>> placements_by_page(const PageLayout& la
   return pages;
 }
 
+// Returns decibels over all channels; of equal images, those of an error below half a step in one
+// texel.
+double psnr_of(const Image8& a, const Image8& b) {
+  double sum = 0.25;
+  for (std::size_t i = 0; i < a.texels.size(); ++i) {
+    const double d = double(a.texels[i]) - double(b.texels[i]);
+    sum += d * d;
+  }
+  return 10 * std::log10(255.0 * 255.0 * double(a.texels.size()) / sum);
+}
+
 // The pages that are baked at once take at most this many bytes together, and so do those that wait
 // to be written. A single page may take more.
 constexpr std::size_t kBytesAtOnce = std::size_t{256} << 20;
+
+constexpr int kErrorCell = 32;  // texels
 
 class PageBaker {
  public:
@@ -78,6 +97,13 @@ class PageBaker {
   }
 
  private:
+  // A page, and its file if that is WebP. A lossy one shows what its file does.
+  struct FinishedPage {
+    BakedPage page = {};
+    std::vector<std::uint8_t> webp = {};
+    std::optional<double> psnr = {};
+  };
+
   Status draw_samples() {
     if (!options_.measure_error) return {};
     const BookedTime cpu_watch(own_cpu_seconds, result_.measure_cpu);
@@ -88,6 +114,8 @@ class PageBaker {
     return {};
   }
 
+  bool floats() const { return options_.exr || options_.linear; }
+
   // Returns whether the caller's thread writes images, instead of threads in the background.
   bool writes_itself() const { return pages_.size() < 2 || context_.threads == 1; }
 
@@ -95,7 +123,7 @@ class PageBaker {
   // of threads if memory allows, because a page may hold a single chart, which occupies one thread.
   std::size_t pages_at_once() const {
     if (writes_itself()) return 1;
-    const std::size_t texel = options_.exr ? 3 + 3 * sizeof(float) : 3;
+    const std::size_t texel = floats() ? 3 + 3 * sizeof(float) : 3;
     std::size_t largest = 1;  // texels of a page
     for (const auto& page : layout_.pages)
       largest = std::max(largest, std::size_t(page.width) * std::size_t(page.height));
@@ -103,11 +131,11 @@ class PageBaker {
   }
 
   Status add_pages(std::size_t first, std::size_t count, Background& writing) {
-    std::vector<std::optional<Result<BakedPage>>> baked(count);
+    std::vector<std::optional<Result<FinishedPage>>> baked(count);
     {
       const BookedTime watch(wall_seconds, result_.bake_wall);
       parallel_for(context_, count, 1,
-                   [&](std::size_t i, std::size_t) { baked[i].emplace(bake(first + i)); });
+                   [&](std::size_t i, std::size_t) { baked[i].emplace(finish(first + i)); });
     }
     if (context_.cancelled()) return Status::cancelled();
     for (std::size_t i = 0; i < count; ++i) {
@@ -117,28 +145,32 @@ class PageBaker {
     return {};
   }
 
-  Status add_page(std::size_t p, BakedPage baked, Background& writing) {
-    result_.covered_texels += baked.covered_texels;
+  Status add_page(std::size_t p, FinishedPage baked, Background& writing) {
+    result_.covered_texels += baked.page.covered_texels;
     if (meter_) {
       const BookedTime cpu_watch(own_cpu_seconds, result_.measure_cpu);
       const BookedTime wall_watch(wall_seconds, result_.measure_wall);
-      meter_->add_page(std::int32_t(p), baked.display);
+      const auto page = std::int32_t(p);
+      options_.linear ? meter_->add_light_page(page, baked.page.linear)
+                      : meter_->add_page(page, baked.page.display);
+      const Extent& size = layout_.pages[p];
+      result_.error.push_back(meter_->cells(page, size.width, size.height, kErrorCell));
     }
-    const std::string name = page_name(options_.target, p) + ".png";
+    const std::string name = page_name(options_.target, p) +
+                             (options_.linear ? ".light" : page_extension(options_.texture_format));
     std::filesystem::path target = options_.target.parent_path() / name;
-    const std::filesystem::path png = files_.path_for(target);
+    const std::filesystem::path image = files_.path_for(target);
     const std::filesystem::path exr =
         options_.exr ? files_.path_for(target.replace_extension(".exr")) : "";
-    result_.image_sources.push_back(png);
+    result_.image_sources.push_back(image);
     result_.pages.push_back({name, layout_.pages[p].width, layout_.pages[p].height,
-                             std::uint32_t(pages_[p].size()), 0});
+                             std::uint32_t(pages_[p].size()), 0, baked.psnr});
     const BookedTime watch(wall_seconds, result_.write_wall);
     if (p + 1 == pages_.size()) only_images_are_left();
-    return writing.add([this, p, png, exr, page = std::move(baked)]() -> Status {
+    return writing.add([this, p, image, exr, baked = std::move(baked)]() -> Status {
       const BookedTime own_watch(own_cpu_seconds, write_cpu_[p]);
-      if (Status s = write_png(png, page.display, {options_.png_compression, true}); !s.ok())
-        return s;
-      if (Status s = exr.empty() ? Status() : write_exr(exr, page.linear); !s.ok()) return s;
+      if (Status s = write_image(baked, image); !s.ok()) return s;
+      if (Status s = exr.empty() ? Status() : write_exr(exr, baked.page.linear); !s.ok()) return s;
       const std::lock_guard lock(reporting_);
       ++written_;
       if (baked_) report_images();
@@ -155,6 +187,35 @@ class PageBaker {
   }
 
   void report_images() const { images_.report("images", double(written_) / double(pages_.size())); }
+
+  Result<FinishedPage> finish(std::size_t p) {
+    Result<BakedPage> baked = bake(p);
+    if (!baked.ok()) return baked.status();
+    FinishedPage finished{std::move(*baked)};
+    if (options_.linear || options_.texture_format != TextureFormat::webp) return finished;
+    Image8& display = finished.page.display;
+    auto webp = encode_webp(display, {options_.webp_quality});
+    if (!webp.ok()) return webp.status();
+    finished.webp = std::move(*webp);
+    if (options_.webp_quality == 0) return finished;
+    Result<Image8> shown = decode_webp(finished.webp, page_name(options_.target, p));
+    if (!shown.ok()) return shown.status();
+    finished.psnr = psnr_of(display, *shown);
+    display = std::move(*shown);
+    return finished;
+  }
+
+  Status write_image(const FinishedPage& baked, const std::filesystem::path& path) const {
+    if (options_.linear) return write_light_page(path, baked.page.linear);
+    if (options_.texture_format == TextureFormat::png)
+      return write_png(path, baked.page.display, {options_.png_compression, true});
+    std::ofstream file(path, std::ios::binary);
+    file.write(reinterpret_cast<const char*>(baked.webp.data()),
+               std::streamsize(baked.webp.size()));
+    file.close();
+    if (file) return {};
+    return {ErrorCode::io, fmt::format("{}: {}", path.string(), write_error(errno))};
+  }
 
   Result<BakedPage> bake(std::size_t p) {
     Context context = context_;
@@ -175,7 +236,7 @@ class PageBaker {
     bake.shifts = options_.shifts;
     bake.mip_levels = mip_levels_;
     bake.method = options_.bake_method;
-    bake.linear = options_.exr;
+    bake.linear = floats();
     return bake_page(light_, pages_[p], bake, context);
   }
 

@@ -12,13 +12,18 @@
 #include "libatlas/core/clock.h"
 #include "libatlas/core/parallel.h"
 #include "libatlas/core/progress.h"
+#include "libatlas/core/srgb.h"
 #include "libatlas/image/image_io.h"
 #include "libatlas/pipeline/advice.h"
 #include "libatlas/pipeline/assemble_world.h"
 #include "libatlas/pipeline/bake_pages.h"
+#include "libatlas/pipeline/false_colour.h"
+#include "libatlas/pipeline/finish_mesh.h"
 #include "libatlas/pipeline/layout_options.h"
+#include "libatlas/pipeline/lightmap.h"
 #include "libatlas/pipeline/longest_sides.h"
 #include "libatlas/pipeline/more_mip_levels.h"
+#include "libatlas/pipeline/report_pictures.h"
 #include "libatlas/pipeline/size_textures.h"
 #include "libatlas/pipeline/stage_recorder.h"
 #include "libatlas/pipeline/suit_pages.h"
@@ -58,7 +63,10 @@ class Export {
         context_(context),
         plan_(make_plan(scene_, options_)),
         report_(planned_report(loaded, plan_, options_)),
-        record_(report_, stage_done, context) {}
+        record_(report_, stage_done, context) {
+    if (std::string line = colours_text(scene_, options); !line.empty())
+      report_.advice.push_back(std::move(line));
+  }
 
   Result<ExportReport> run() {
     const double cpu = own_cpu_seconds(), wall = wall_seconds();
@@ -81,6 +89,7 @@ class Export {
     if (plan_.simplify) {
       if (Status s = simplify(); !s.ok()) return s;
     }
+    if (Status s = finish(); !s.ok()) return s;
     if (Status s = write(); !s.ok()) return s;
     report_.carried_out = true;
     for (std::string& line : advice_on(report_, options_))
@@ -164,8 +173,11 @@ class Export {
     report_.luminance = *statistics;
     report_.tone = tone_;
     report_.exposure_white = double(tone_.white) / tone_.scale;
-    record_.finish({scene_.triangle_count(), 1, "tone curve",
-                    fmt::format("white {:.4g}", report_.exposure_white)});
+    const auto median = static_cast<float>(report_.luminance.median);
+    record_.finish(
+        {scene_.triangle_count(), 1, "tone curve",
+         fmt::format("white {:.4g}, the median {:.4g} shown as {} of 255", report_.exposure_white,
+                     median, quantize8(tone_.display({median, median, median}).y))});
     return {};
   }
 
@@ -237,10 +249,37 @@ class Export {
     return std::move(guarded->layout);
   }
 
-  // Without light, no texel density is required, so pages are filled as well as packing can.
+  // Refuses plain uvs of less than the density asked for: pages have no image whose texels could
+  // become coarser, and the texture that comes on them would be.
+  Status check_density(const PlainUvs& uvs, const PageLayout& layout) const {
+    constexpr double kRounding = 1e-6;
+    if (options_.texel_metres == 0) return {};
+    const double texel = scene_.metres_per_unit / (uvs.density * layout.scale);
+    if (texel <= options_.texel_metres * (1 + kRounding)) return {};
+    return {ErrorCode::no_solution,
+            fmt::format("ExportOptions::texel_metres: {:g} m needs more room than the pages have, "
+                        "whose texels are {:.3g} m (give {}, or longer texels)",
+                        options_.texel_metres, texel, more_room(options_, false))};
+  }
+
+  // Without light, pages are filled as well as packing can, unless a texel density is asked for.
+  // One above what full pages hold is lowered to that, which also keeps sizes in texels finite.
   Result<PageLayout> lay_out_plain(const LayoutOptions& options, const Context& context) {
     const double texels = double(options.pages) * options.page_size * options.page_size;
-    const PlainUvs uvs{view_of(scene_), options_.charts, filling_density(charts_, texels)};
+    double density = filling_density(charts_, texels);
+    if (options_.texel_metres > 0)
+      density = std::min(density, scene_.metres_per_unit / options_.texel_metres);
+    const PlainUvs uvs{view_of(scene_), options_.charts, density};
+    Result<PageLayout> layout = fill_plain(uvs, options, context);
+    if (!layout.ok()) return layout;
+    if (Status s = check_density(uvs, *layout); !s.ok()) return s;
+    if (options_.texel_metres > 0)
+      report_.texel = report_.packed_texel = options_.texel_metres / scene_.metres_per_unit;
+    return layout;
+  }
+
+  Result<PageLayout> fill_plain(const PlainUvs& uvs, const LayoutOptions& options,
+                                const Context& context) {
     if (!options_.keep_scene) {
       Result<PageLayout> layout = fill_pages(uvs, options, charts_, context);
       report_charts();
@@ -281,6 +320,10 @@ class Export {
     if (charts_.charts.size() > uncut)
       quality += fmt::format(", cut into {}", charts_.charts.size());
     record_.finish({uncut, layout_.pages.size(), "pages", quality});
+    for (const ChartPlacement& p : layout_.placements) {
+      report_.chart_pages.push_back(p.page);
+      report_.chart_densities.push_back((p.texels_per_unit.x + p.texels_per_unit.y) / 2);
+    }
     if (!plan_.bake) {
       for (const Extent& page : layout_.pages) {
         report_.pages.push_back({"", page.width, page.height, 0, 0});
@@ -299,6 +342,7 @@ class Export {
     if (!baked.ok()) return files_.told_by_target(baked.status());
     report_.pages = baked->pages;
     image_sources_ = std::move(baked->image_sources);
+    error_ = std::move(baked->error);
     std::uint64_t bytes = 0;
     for (const PageReport& page : baked->pages) {
       bytes += page.image_bytes;
@@ -349,18 +393,46 @@ class Export {
     return {};
   }
 
+  // Draws the pictures that were asked for, while the pages' images are still at hand.
+  Status draw() {
+    if (options_.report_pictures) {
+      Result<ReportPictures> pictures =
+          report_pictures({charts_, layout_, image_sources_, report_.fidelity.worst}, context_);
+      if (!pictures.ok()) return files_.told_by_target(pictures.status());
+      report_.pictures = std::move(*pictures);
+    }
+    if (options_.false_colour.empty()) return {};
+    return files_.told_by_target(
+        write_png(files_.path_for(options_.false_colour),
+                  draw_false_colours(scene_, options_.up, charts_, layout_), {}));
+  }
+
+  Status finish() {
+    const Context& context = record_.begin("uvs");
+    const SimplifiedMesh* coarse = coarse_ ? &*coarse_ : nullptr;
+    finished_ =
+        finish_mesh({scene_, options_, charts_, layout_, coarse, plan_.bake}, report_, context);
+    if (context.cancelled()) return Status::cancelled();
+    record_.finish({charts_.uvs.size(), report_.triangles_out, "triangles",
+                    fmt::format("99.9 % {:.3f} as written", report_.written_stretch_999)});
+    return {};
+  }
+
   Status write() {
     const Context& context = record_.begin("writing");
-    const ExportToWrite made{scene_,
-                             options_,
-                             charts_,
-                             layout_,
-                             coarse_ ? &*coarse_ : nullptr,
-                             plan_.bake,
-                             sampler_ ? &*sampler_ : nullptr,
-                             image_sources_,
-                             view_};
-    Result<StageOutcome> written = write_export(made, files_, report_, context);
+    if (Status s = draw(); !s.ok()) return s;
+    ExportToWrite made{scene_,
+                       options_,
+                       charts_,
+                       layout_,
+                       finished_->mesh,
+                       std::move(finished_->uvs),
+                       plan_.bake,
+                       sampler_ ? &*sampler_ : nullptr,
+                       image_sources_,
+                       error_,
+                       view_};
+    Result<StageOutcome> written = write_export(std::move(made), files_, report_, context);
     if (!written.ok()) return written.status();
     record_.finish(std::move(*written));
     return {};
@@ -383,7 +455,9 @@ class Export {
   std::vector<Vec2d> densities_, full_densities_;  // texels per unit, one per chart
   PageLayout layout_;
   std::optional<SimplifiedMesh> coarse_;
+  std::optional<FinishedMesh> finished_;
   std::vector<std::filesystem::path> image_sources_;  // where the pages' images lie until commit
+  std::vector<FidelityMeter::Cells> error_;           // one per page, or none
   AtomicFiles files_;
   ExportReport report_;
   StageRecorder record_;
@@ -392,14 +466,18 @@ class Export {
 }  // namespace
 
 std::string plain_pages_text(std::span<const Extent> pages, bool udim) {
-  const Extent page = pages[0];
+  const auto wider = [](const Extent& a, const Extent& b) { return a.width < b.width; };
+  const auto [least, most] = std::minmax_element(pages.begin(), pages.end(), wider);
+  // Pages of a given density are no larger than what is on them.
+  const std::string sides =
+      fmt::format("{0} x {0}", most->width) +
+      (least->width < most->width ? fmt::format(" to {0} x {0}", least->width) : std::string());
   if (pages.size() > 1 && udim)
-    return fmt::format("uvs of UDIM tiles 1001 to {0}, packed for {1} x {1} texels each",
-                       1000 + pages.size(), page.width);
+    return fmt::format("uvs of UDIM tiles 1001 to {}, packed for {} texels each",
+                       1000 + pages.size(), sides);
   if (pages.size() > 1)
-    return fmt::format("uvs of {0} square pages, packed for {1} x {1} texels", pages.size(),
-                       page.width);
-  return uv_page_text(page.width, page.height);
+    return fmt::format("uvs of {} square pages, packed for {} texels", pages.size(), sides);
+  return uv_page_text(pages[0].width, pages[0].height);
 }
 
 Result<ExportReport> export_world(const LoadedScene& loaded, const ExportOptions& options,

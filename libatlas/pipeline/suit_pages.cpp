@@ -34,7 +34,9 @@ struct BoxFit {
 
 BoxFit fit_boxes(std::span<const FitItem> items, const LayoutOptions& options,
                  const Context& context) {
-  const Result<FitResult> fitted = fit_pages(items, box_fit_options(options), context);
+  FitOptions fit = box_fit_options(options);
+  fit.preset = PackPreset::standard;  // it is an estimate, whatever effort the pages are worth
+  const Result<FitResult> fitted = fit_pages(items, fit, context);
   return fitted.ok() ? BoxFit{fitted->scale, fitted->utilization} : BoxFit{};
 }
 

@@ -6,6 +6,7 @@
 
 #include "libatlas/core/atomic_file.h"
 #include "libatlas/report/export_report.h"
+#include "libatlas/report/report_json.h"
 
 namespace atlas {
 namespace {
@@ -98,7 +99,8 @@ Json charts_json(const ExportReport& r) {
   Json list = Json::array();
   std::uint64_t planar = 0;
   double widest_cone = 0;
-  for (const Chart& c : r.charts) {
+  for (std::size_t i = 0; i < r.charts.size(); ++i) {
+    const Chart& c = r.charts[i];
     planar += c.planar_projection;
     widest_cone = std::max(widest_cone, c.cone_degrees);
     list.push_back({{"triangles", c.triangle_count},
@@ -108,6 +110,9 @@ Json charts_json(const ExportReport& r) {
                     {"planar", c.planar_projection},
                     {"kept", c.kept},
                     {"distortion", json_of(c.distortion)}});
+    if (i >= r.chart_pages.size()) continue;
+    list.back()["page"] = r.chart_pages[i];
+    list.back()["texels_per_unit"] = r.chart_densities[i];
   }
   return {
       {"count", r.charts.size()},
@@ -138,8 +143,8 @@ Json light_json(const ExportReport& r) {
   return {{"tone", tone_operator_name(r.tone.op)},
           {"white", r.exposure_white},
           {"median", r.luminance.median},
-          {"percentile99", r.luminance.percentile99},
-          {"percentile999", r.luminance.percentile999},
+          {"middle", r.luminance.middle},
+          {"percentile98", r.luminance.percentile98},
           {"maximum", r.luminance.maximum},
           {"mean", r.luminance.mean},
           {"log_average", r.luminance.log_average},
@@ -185,11 +190,13 @@ Json grouping_json(const GroupingResult& g) {
 Json pages_json(const ExportReport& r) {
   Json pages = Json::array();
   for (const PageReport& p : r.pages) {
+    const Json psnr = p.compression_psnr ? Json(*p.compression_psnr) : Json();
     pages.push_back({{"image", p.image},
                      {"width", p.width},
                      {"height", p.height},
                      {"charts", p.charts},
-                     {"bytes", p.image_bytes}});
+                     {"bytes", p.image_bytes},
+                     {"compression_psnr", psnr}});
   }
   Json packing{{"scale", r.scale},
                {"outlines", r.outlines},
@@ -216,6 +223,13 @@ Json error_json(const Fidelity& f, ToneOperator tone) {
   const auto decibels = [](double value, std::uint64_t samples) {
     return samples > 0 && value < kPerfectDecibels ? Json(value) : Json(nullptr);
   };
+  Json worst = Json::array();
+  for (const WorstPlace& place : f.worst)
+    worst.push_back({{"page", place.page},
+                     {"texel", {place.texel.x, place.texel.y}},
+                     {"wanted", {place.wanted.x, place.wanted.y, place.wanted.z}},
+                     {"shown", {place.shown.x, place.shown.y, place.shown.z}},
+                     {"error", place.error}});
   const auto of_lit = [&](double value) { return f.lit > 0 ? Json(value) : Json(nullptr); };
   return {{"samples_lit", f.lit},
           {"samples_unlit", f.unlit},
@@ -230,7 +244,8 @@ Json error_json(const Fidelity& f, ToneOperator tone) {
           {"rmse_display", of_lit(f.rmse_display)},
           {"p95", of_lit(f.p95)},
           {"p999", of_lit(f.p999)},
-          {"max", of_lit(f.maximum)}};
+          {"max", of_lit(f.maximum)},
+          {"worst", worst}};
 }
 
 // Values that were not measured have no key, because a 0 would read as a perfect result.
@@ -258,15 +273,19 @@ void add_results(const ExportReport& r, Json& json) {
 
 }  // namespace
 
-Status write_json(const ExportReport& r, const std::filesystem::path& path) {
+nlohmann::ordered_json json_of(const ExportReport& r) {
   Json json{{"target", r.target.string()}, {"wall_s", r.wall_seconds},
             {"cpu_s", r.cpu_seconds},      {"peak_mib", double(r.peak_memory) / kMebibyte},
             {"scene", scene_json(r)},      {"plan", json_of(r.plan)},
             {"stages", stages_json(r)},    {"skipped", skipped_json(r.plan)}};
   if (r.carried_out) add_results(r, json);
+  return json;
+}
+
+Status write_json(const ExportReport& r, const std::filesystem::path& path) {
   // Names come from files and may hold bytes that are not UTF-8. Such bytes are replaced, because
   // otherwise they would end the export.
-  return write_file(path, json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n");
+  return write_file(path, json_of(r).dump(1, ' ', false, Json::error_handler_t::replace) + "\n");
 }
 
 std::string stage_line(const StageReport& s) {

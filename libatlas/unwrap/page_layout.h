@@ -10,24 +10,18 @@
 #include "libatlas/core/context.h"
 #include "libatlas/core/status.h"
 #include "libatlas/pack/grouping.h"
-#include "libatlas/pack/pack.h"
+#include "libatlas/pack/pages.h"
 #include "libatlas/uvs/placement.h"
 
 namespace atlas {
 
-struct LayoutOptions {
-  std::uint32_t pages = 8;         // the most pages to use, >= 1
-  std::int32_t page_size = 2048;   // largest side, a power of two unless free_aspect
-  std::int32_t padding = 2;        // texels kept free around charts; gutter_pad(mip_levels) to bake
-  std::int32_t alignment = 4;      // boxes begin and end at multiples of this; 2^mip_levels to bake
+// Page sides are powers of two unless free_aspect, which overrides `square` too.
+struct LayoutOptions : PageOptions {
   std::int32_t minimum_side = 16;  // scaling makes no side of a chart shorter, if it was longer
   bool outlines = false;           // also try outlines, and use them if they pack better
   // Use one page whose sides are at most page_size, and make it as full as possible. This is for
   // uvs without images, where texels have no size.
   bool free_aspect = false;
-  bool square = false;         // pages are as wide as high; free_aspect overrides it
-  bool allow_rotation = true;  // turn charts to pack better; else they lie as their uvs do
-  PackPreset preset = PackPreset::standard;
   // What to change if there is no room, in the words of whoever chose the options. It is part of
   // the error message.
   std::string remedy = "allow more or larger pages, or less padding";

@@ -3,20 +3,18 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <numeric>
 #include <string>
 #include <unordered_map>
 #include <utility>
 
+#include "libatlas/charts/charted_mesh.h"
 #include "libatlas/core/no_index.h"
-#include "libatlas/pipeline/assemble_world.h"
+#include "libatlas/unwrap/check_pages.h"
 #include "libatlas/unwrap/fill_pages.h"
 #include "libatlas/unwrap/part_gaps.h"
-#include "libatlas/uvs/draw_once.h"
-#include "libatlas/uvs/page_uvs.h"
-#include "libatlas/uvs/round_uvs.h"
+#include "libatlas/uvs/finish_uvs.h"
 
 namespace atlas {
 namespace {
@@ -30,32 +28,13 @@ std::int32_t alignment(const UnwrapOptions& options) {
   return std::lcm(options.alignment, 1 << options.mip_levels);
 }
 
-// Returns whether charts may be moved by fractions of a texel. After such a move, the texels that a
-// chart owns for its mip levels may reach a texel further.
-bool may_move(const UnwrapOptions& options) {
-  return options.mip_levels == 0 || options.padding > gutter_pad(options.mip_levels);
-}
-
 Status check_options(const UnwrapOptions& options) {
   const auto bad = [](std::string text) {
     return Status(ErrorCode::bad_option, "unwrap: " + std::move(text));
   };
-  if (options.pages < 1) return bad("pages is 0 (ask for at least one)");
-  if (options.page_size < 64 || options.page_size > 16384)
-    return bad(fmt::format("page_size is {} (64 to 16384 texels)", options.page_size));
-  const bool powers = options.square || options.pages > 1;
-  if (powers && !std::has_single_bit(std::uint32_t(options.page_size)))
-    return bad(fmt::format("page_size is {} (a power of two for square or several pages)",
-                           options.page_size));
-  if (options.padding < 0 || options.padding > options.page_size / 4)
-    return bad(fmt::format("padding is {} (0 to a quarter of page_size)", options.padding));
+  if (Status s = check_pages("unwrap", options); !s.ok()) return s;
   if (options.mip_levels < 0 || options.mip_levels > 10)
     return bad(fmt::format("mip_levels is {} (0 to 10)", options.mip_levels));
-  if (options.alignment < 1 || options.alignment > options.page_size / 4)
-    return bad(fmt::format("alignment is {} (1 to a quarter of page_size)", options.alignment));
-  if (powers && !std::has_single_bit(std::uint32_t(options.alignment)))
-    return bad(fmt::format("alignment is {} (a power of two for square or several pages)",
-                           options.alignment));
   if (alignment(options) > options.page_size / 4 || padding(options) > options.page_size / 4)
     return bad(fmt::format(
         "mip_levels is {}, whose cells of {} texels are more than a quarter of page_size",
@@ -74,17 +53,12 @@ Result<PagesOfParts> lay_out(const MeshView& mesh, const UnwrapOptions& options,
   const double filling = filling_density(charts, texels);
   const double density =
       options.texels_per_unit > 0 ? std::min(options.texels_per_unit, filling) : filling;
-  LayoutOptions layout;
-  layout.pages = options.pages;
-  layout.page_size = options.page_size;
+  LayoutOptions layout{options};
   layout.padding = padding(options);
   layout.alignment = alignment(options);
-  layout.allow_rotation = options.allow_rotation;
-  layout.preset = options.packing;
   layout.minimum_side = 0;
   layout.outlines = true;
   layout.remedy = "ask for more pages, a larger page_size, less padding or fewer mip_levels";
-  layout.square = options.square;
   layout.free_aspect = options.pages == 1 && !options.square;
   const PlainUvs uvs{mesh, options.charts, density};
   if (options.part_gaps) return fill_pages_apart(uvs, layout, charts, context);
@@ -119,6 +93,16 @@ void join_corners(std::span<const std::uint32_t> indices, std::span<const Vec2f>
 
 }  // namespace
 
+UnwrapOptions lightmap_options(double texels_per_metre, double metres_per_unit) {
+  UnwrapOptions options;
+  options.texels_per_unit = texels_per_metre * metres_per_unit;
+  options.mip_levels = 2;
+  options.padding = gutter_pad(options.mip_levels) + 1;
+  options.square = true;
+  options.part_gaps = true;
+  return options;
+}
+
 Result<UnwrappedMesh> unwrap_mesh(const MeshView& mesh, const UnwrapOptions& options,
                                   const Context& context) {
   if (Status s = check_options(options); !s.ok()) return s;
@@ -133,30 +117,22 @@ Result<UnwrappedMesh> unwrap_mesh(const MeshView& mesh, const UnwrapOptions& opt
 
   UnwrappedMesh result;
   result.charts = std::move(*charts);
-  result.placements = std::move(layout.placements);
   result.pages = std::move(layout.pages);
   result.utilization = layout.uv_utilization;
-  result.texels_per_unit = result.placements[0].texels_per_unit.x;
+  result.texels_per_unit = layout.placements[0].texels_per_unit.x;
   result.gaps = laid->left;
   result.gaps.charts = laid->opened;
-  const PlacedCharts placed{result.charts, result.placements, result.pages};
   const ChartedMesh charted(mesh.indices, result.charts);
-  std::vector<Vec2f> rounded;
-  // Light is baked where the placements say, and gutters tolerate a texel.
-  const double farthest = options.mip_levels > 0 ? texel_of_longest(result.pages) : 1;
-  result.thin_triangles = round_uvs(page_uvs(placed), charted.view().uv_indices, rounded, farthest);
+  FinishedUvs finished =
+      finish_uvs({result.charts, layout.placements, result.pages}, charted.view().uv_indices,
+                 {false, options.mip_levels, options.padding}, context);
+  result.thin_triangles = finished.thin_triangles;
   if (result.thin_triangles > 0)
     context.say(fmt::format("{} slivers have no area or are turned over in uvs rounded to floats",
                             result.thin_triangles));
-  const DrawnTwice drawn = may_move(options)
-                               ? draw_once(placed, charted.view().uv_indices, rounded, context)
-                               : drawn_twice(placed, charted.view().uv_indices, rounded, context);
-  result.texels_drawn_twice = drawn.after;
-  for (const DrawnTwice::Move& move : drawn.moves) {
-    Vec2d& offset = result.placements[move.chart].offset;
-    offset = {offset.x + move.texels.x, offset.y + move.texels.y};
-  }
-  join_corners(mesh.indices, rounded, result);
+  result.texels_drawn_twice = finished.texels_drawn_twice;
+  result.placements = std::move(finished.placements);
+  join_corners(mesh.indices, finished.uvs, result);
   result.triangle_page.reserve(result.charts.triangle_chart.size());
   for (const std::uint32_t chart : result.charts.triangle_chart)
     result.triangle_page.push_back(std::uint32_t(result.placements[chart].page));

@@ -9,41 +9,38 @@
 #include "libatlas/charts/gaps.h"
 #include "libatlas/core/context.h"
 #include "libatlas/core/status.h"
-#include "libatlas/pack/pack.h"
+#include "libatlas/pack/pages.h"
 #include "libatlas/uvs/placement.h"
 
 namespace atlas {
 
-struct UnwrapOptions {
+// Of the pages, page_size is 64 to 16384 texels, and padding and alignment are at most a quarter of
+// it. With `square`, page sides are equal and powers of two (page_size must be one). Otherwise a
+// single page has the shape that packs best, and textures for it must have the same shape; several
+// pages have sides that are powers of two.
+struct UnwrapOptions : PageOptions {
   ChartOptions charts = {};
-  std::uint32_t pages = 1;        // the most pages to use, >= 1
-  std::int32_t page_size = 2048;  // largest side of a page, texels, 64 to 16384
-  std::int32_t padding = 2;       // texels kept free around each chart, 0 to a quarter of page_size
   // Prepares the pages to be baked with this many mip levels (BakeOptions::mip_levels), 0 to 10.
   // From 1 on, each chart gets at least gutter_pad(mip_levels) texels of padding, and whole cells
   // of 2^mip_levels texels, and the uvs of slivers lie within a texel of where the placements say
   // that light is baked. A padding of 1 is enough to bake with 0.
   std::int32_t mip_levels = 0;
-  // Boxes and cells of charts begin and end at multiples of this many texels, 1 to a quarter of
-  // page_size (4 for textures compressed in blocks), and also at multiples of 2^mip_levels. It is a
-  // power of two for square or several pages, whose sides are powers of two.
-  std::int32_t alignment = 1;
-  bool allow_rotation = true;  // turn charts to pack better; else they lie as their uvs do
-  PackPreset packing = PackPreset::standard;
   // Texels per unit of length, the same for all charts, times MeshView::density where that is
   // given; 0 for as many as the pages hold. If the pages hold less, all charts get less, see
   // UnwrappedMesh::texels_per_unit. A single page that is not square is made as full as possible,
   // instead of making its charts as large as possible.
   double texels_per_unit = 0;
-  // Page sides are equal and powers of two (page_size must be one). Otherwise a single page has the
-  // shape that packs best, and textures for it must have the same shape; several pages have sides
-  // that are powers of two.
-  bool square = false;
   // Parts of one chart that are far apart on the surface are kept apart on the page, too, like
   // different charts. Lightmaps need this, because bilinear look-ups would otherwise mix the light
   // of both parts. The uvs stretch a little more there, within ChartOptions::max_stretch.
   bool part_gaps = false;
 };
+
+// The options for lightmaps of game engines: `square` pages, whose mip levels 0 to 2 can be built
+// and whose blocks of 4 x 4 texels can be compressed without mixing charts; `part_gaps`; and a
+// texel of padding more than that takes, within which charts are moved until no texel is drawn
+// twice. `texels_per_metre`: 0 for as many as the pages hold. `metres_per_unit`: of the positions.
+UnwrapOptions lightmap_options(double texels_per_metre, double metres_per_unit = 1);
 
 // Each vertex is a copy of one of the input's vertices. A vertex on a seam has a copy for each
 // side.

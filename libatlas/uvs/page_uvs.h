@@ -23,8 +23,4 @@ struct PlacedCharts {
 // (origin bottom left). The values are not rounded yet, see round_uvs.h.
 std::vector<Vec2d> page_uvs(const PlacedCharts& placed);
 
-// Returns a texel of the longest page, as a share of that page: how far rounding may move uvs of
-// baked pages (round_uvs.h).
-double texel_of_longest(std::span<const Extent> pages);
-
 }  // namespace atlas

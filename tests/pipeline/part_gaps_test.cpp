@@ -69,6 +69,7 @@ double look_up(const Image8& page, Vec2d at) {
 // Returns the largest error of a look-up at the ends, in 8-bit codes.
 double error_at_ends(const Stair& stair) {
   LayoutOptions options;
+  options.alignment = 4;
   options.pages = 1;
   options.page_size = kPage;
   const std::vector<Vec2d> density{{kDensity, kDensity}};
@@ -171,7 +172,7 @@ TEST(PartGaps, OnPoorPagesTheyAreOpenedOnceMore) {
   ASSERT_TRUE(made.ok()) << made.status().message();
   ASSERT_EQ(made->charts.size(), 2u);
   for (Chart& chart : made->charts) chart.kept = false;
-  LayoutOptions layout{.pages = 1, .page_size = 256, .padding = 1, .alignment = 1};
+  LayoutOptions layout{{.pages = 1, .page_size = 256, .padding = 1, .alignment = 1}};
   layout.minimum_side = 0;
   layout.outlines = layout.square = true;
   const double texels = 256.0 * 256;

@@ -63,6 +63,77 @@ TEST(Off, NormalsColoursAndTexcoordsInThisOrder) {
   EXPECT_TRUE(bare.normals.empty()) << "they are not asked for";
 }
 
+const std::string kTwoFaces = "OFF\n4 2 0\n" + kCorners;
+
+std::vector<Vec3f> corner_light(const Scene& scene) {
+  std::vector<Vec3f> result;
+  for (const std::uint32_t v : scene.indices)
+    if (scene.lit()) result.push_back(scene.illumination[v]);
+  return result;
+}
+
+// Colours of faces follow the scale of those of vertices, and are those of all their corners.
+TEST(Off, ColoursOfFaces) {
+  const auto light = [](const char* a, const char* b) {
+    return corner_light(scene_of(kTwoFaces + "3 0 1 2 " + a + "\n3 0 2 3 " + b + "\n"));
+  };
+  const auto both = [](Vec3f a, Vec3f b) { return std::vector<Vec3f>{a, a, a, b, b, b}; };
+  EXPECT_EQ(light("51 0 255", "1 1 1"), both({0.2f, 0, 1}, {1 / 255.f, 1 / 255.f, 1 / 255.f}));
+  EXPECT_EQ(light("51 0 255 255 # red", "0 0 0 255"), both({0.2f, 0, 1}, {0, 0, 0}));
+  EXPECT_EQ(light("0.5 0 1", "1 1 1"), both({0.5f, 0, 1}, {1, 1, 1}));
+  EXPECT_EQ(light("1 0 0", "0 0 1"), both({1, 0, 0}, {0, 0, 1}));
+  EXPECT_EQ(light("1 0 0 0.5", "0 3 1 1"), both({1 / 255.f, 0, 0}, {0, 3 / 255.f, 1 / 255.f}));
+  EXPECT_EQ(light("", ""), std::vector<Vec3f>{});
+  // Indices into a map of colours are in no file.
+  EXPECT_EQ(light("7", "3"), std::vector<Vec3f>{});
+}
+
+TEST(Off, FacesShareVerticesWhereTheirColoursAgree) {
+  EXPECT_EQ(scene_of(kTwoFaces + "3 0 1 2 9 8 7\n3 0 2 3 9 8 7\n").positions.size(), 4u);
+  const Scene scene = scene_of(kTwoFaces + "3 0 1 2 9 8 7\n3 0 2 3 9 8 6\n");
+  EXPECT_EQ(scene.positions.size(), 6u);
+  for (std::size_t k = 0; k < 6; ++k) {
+    const Vec3f p = scene.positions[scene.indices[k]];
+    const Vec3f corners[] = {{0, 0, 0}, {2, 0, 0}, {2, 3, 0}, {0, 0, 0}, {2, 3, 0}, {0, 3, 0}};
+    EXPECT_EQ(p, corners[k]);
+  }
+}
+
+TEST(Off, FacesWithoutAColourAreDark) {
+  const auto loaded = load(kTwoFaces + "3 0 1 2\n3 0 2 3 255 0 0\n");
+  ASSERT_TRUE(loaded.ok()) << loaded.status().message();
+  const Vec3f red{1, 0, 0};
+  EXPECT_EQ(corner_light(loaded->scene), (std::vector<Vec3f>{{}, {}, {}, red, red, red}));
+  EXPECT_EQ(loaded->defects.count(DefectKind::illumination_missing), 3u);
+}
+
+// Colours of vertices say more, and those of faces are told to be ignored.
+TEST(Off, ColoursOfVerticesComeFirst) {
+  const auto loaded =
+      load("COFF\n3 1 0\n0 0 0 255 0 0\n1 0 0 0 0 0\n0 1 0 0 0 0\n3 0 1 2 0 255 0\n");
+  ASSERT_TRUE(loaded.ok()) << loaded.status().message();
+  EXPECT_EQ(loaded->scene.illumination[0], (Vec3f{1, 0, 0}));
+  ASSERT_EQ(loaded->defects.count(DefectKind::element_ignored), 1u);
+  EXPECT_NE(loaded->defects.lines()[0].find("colours of faces"), std::string::npos);
+}
+
+TEST(Off, IndicesBeyondTheVerticesReachNoCopies) {
+  const auto loaded = load(kTwoFaces + "3 0 1 2 9 8 7\n3 0 2 4 9 8 6\n");
+  ASSERT_TRUE(loaded.ok()) << loaded.status().message();
+  EXPECT_EQ(loaded->scene.triangle_count(), 1u);
+}
+
+TEST(Off, AlphaOfFacesIsKept) {
+  const TempFolder folder;
+  const auto path = folder.write("a.off", kTwoFaces + "3 0 1 2 255 0 0 51\n3 0 2 3 255 0 0\n");
+  const auto loaded = read_scene(path, {.rest = true}, {});
+  ASSERT_TRUE(loaded.ok()) << loaded.status().message();
+  const Scene& scene = loaded->scene;
+  ASSERT_EQ(scene.vertex_opacity.size(), 6u);
+  for (std::size_t k = 0; k < 6; ++k)
+    EXPECT_EQ(scene.vertex_opacity[scene.indices[k]], k < 3 ? 0.2f : 1);
+}
+
 // Every element is as short as the format allows.
 TEST(Off, ShortElementsAreNotTakenForACutFile) {
   std::string vertices, faces;
@@ -175,11 +246,15 @@ TEST_P(BinaryOff, IsRead) {
     square(colours);
     const Scene scene = scene_of(bytes_);
     EXPECT_EQ(scene.triangle_count(), 3u);
-    ASSERT_EQ(scene.positions.size(), 4u);
+    ASSERT_GE(scene.positions.size(), 4u);
     EXPECT_EQ(scene.positions[3], (Vec3f{3, 9, 1}));
-    ASSERT_EQ(scene.lit(), colours);
+    // Only Geomview's form has colours of faces.
+    ASSERT_EQ(scene.lit(), colours || GetParam());
     if (colours) {
       EXPECT_EQ(scene.illumination[2], (Vec3f{200, .5f, -1}));
+    } else if (GetParam()) {
+      for (std::size_t k = 0; k < 9; ++k)
+        EXPECT_EQ(scene.illumination[scene.indices[k]].y, k < 3 ? 0 : 0.5f);
     }
   }
 }

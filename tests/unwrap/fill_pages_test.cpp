@@ -27,7 +27,7 @@ Shape plate_and_strip() {
 }
 
 TEST(FillPages, AStripIsCutForASquarePage) {
-  const UnwrapOptions square{.page_size = 512, .square = true};
+  const UnwrapOptions square{{.page_size = 512, .square = true}};
   const UnwrappedMesh whole = unwrap(plate_and_strip(), square, 0),
                       cut = unwrap(plate_and_strip(), square);
   EXPECT_EQ(whole.charts.charts.size(), 2u);
@@ -40,7 +40,7 @@ TEST(FillPages, AStripIsCutForASquarePage) {
 
 // A page as slender as a road would leave it coarse. A less slender strip is worth no seams.
 TEST(FillPages, ARoadIsCutForAPageOfFreeShape) {
-  const UnwrapOptions free{.page_size = 512};
+  const UnwrapOptions free{{.page_size = 512}};
   const Shape road = grid(600, 3, 200, 1);
   const UnwrappedMesh whole = unwrap(road, free, 0), cut = unwrap(road, free);
   EXPECT_EQ(whole.charts.charts.size(), 1u);
@@ -59,7 +59,7 @@ TEST(FillPages, NeedlesAreNotLaidOutInPiecesInVain) {
   Shape stretched = torus(80, 24);
   for (auto& p : stretched.positions) p.y *= 1e6;
   const double begun = cpu_seconds();
-  const UnwrappedMesh needles = unwrap(stretched, {.page_size = 16384});
+  const UnwrappedMesh needles = unwrap(stretched, {{.page_size = 16384}});
   EXPECT_LT(cpu_seconds() - begun, kSlowness);
   EXPECT_LT(needles.charts.charts.size(), 100u);
 }
@@ -68,7 +68,7 @@ TEST(FillPages, NeedlesAreNotLaidOutInPiecesInVain) {
 // emptier, and nothing is cut.
 TEST(FillPages, AGivenDensityIsReachedOnAFullPage) {
   const Shape ring = torus(48, 24);
-  UnwrapOptions options{.page_size = 2048};
+  UnwrapOptions options{{.page_size = 2048}};
   const UnwrappedMesh largest = unwrap(ring, options);
   options.texels_per_unit = largest.texels_per_unit / 6;
   const UnwrappedMesh given = unwrap(ring, options);
@@ -80,7 +80,7 @@ TEST(FillPages, AGivenDensityIsReachedOnAFullPage) {
 
 // A single sheet as large as four pages.
 TEST(FillPages, ASheetIsCutForSeveralPages) {
-  const UnwrapOptions four{.pages = 4, .page_size = 256};
+  const UnwrapOptions four{{.pages = 4, .page_size = 256}};
   const UnwrappedMesh whole = unwrap(grid(64, 64), four, 0), cut = unwrap(grid(64, 64), four);
   EXPECT_EQ(whole.pages.size(), 1u);
   EXPECT_EQ(cut.pages.size(), 4u);
@@ -93,7 +93,7 @@ TEST(FillPages, ASheetIsCutForSeveralPages) {
 TEST(FillPages, WhatPressingMakesOfCutsCounts) {
   const std::uint32_t pages[] = {4, 6};
   for (const std::uint32_t count : pages) {
-    const UnwrappedMesh cut = unwrap(torus(48, 24), {.pages = count, .page_size = 512});
+    const UnwrappedMesh cut = unwrap(torus(48, 24), {{.pages = count, .page_size = 512}});
     EXPECT_EQ(cut.pages.size(), count);
     EXPECT_GT(cut.utilization, 0.65) << count;
     EXPECT_LE(cut.charts.charts.size(), 6 * count) << count;
@@ -123,14 +123,15 @@ Shape star_prism(std::uint32_t tips) {
 // worth their seams.
 TEST(FillPages, MorePagesMakeNothingCoarser) {
   const Shape prism = star_prism(10);
-  const UnwrappedMesh four = unwrap(prism, {.pages = 4, .page_size = 512}),
-                      eight = unwrap(prism, {.pages = 8, .page_size = 512});
+  const UnwrappedMesh four = unwrap(prism, {{.pages = 4, .page_size = 512}}),
+                      eight = unwrap(prism, {{.pages = 8, .page_size = 512}});
   EXPECT_GE(eight.texels_per_unit, 0.99 * four.texels_per_unit);
 }
 
 TEST(FillPages, WhatFitsAsDenseAsItIsWantedStaysWhole) {
-  const UnwrappedMesh mesh =
-      unwrap(plate_and_strip(), {.page_size = 1024, .texels_per_unit = 20, .square = true});
+  UnwrapOptions options{{.page_size = 1024, .square = true}};
+  options.texels_per_unit = 20;
+  const UnwrappedMesh mesh = unwrap(plate_and_strip(), options);
   // As many as make_charts() makes for a page of any shape.
   EXPECT_EQ(mesh.charts.charts.size(), 5u);
   EXPECT_DOUBLE_EQ(mesh.texels_per_unit, 20);
@@ -142,7 +143,7 @@ TEST(FillPages, GivenChartsStayWhole) {
   for (const Vec3f& p : shape.positions) uvs.push_back({p.x / 8, p.y / 8});
   MeshView view = view_of(shape);
   view.texcoords = uvs;
-  UnwrapOptions options{.page_size = 512, .square = true};
+  UnwrapOptions options{{.page_size = 512, .square = true}};
   options.charts.keep_uv_charts = true;
   const auto kept = unwrap_mesh(view, options, {});
   ASSERT_TRUE(kept.ok()) << kept.status().message();
@@ -151,7 +152,7 @@ TEST(FillPages, GivenChartsStayWhole) {
 
 // The page is less than 0.7 full, but no cut would let it hold enough more.
 TEST(FillPages, SeamsMustBeWorthIt) {
-  const UnwrapOptions square{.page_size = 512, .square = true};
+  const UnwrapOptions square{{.page_size = 512, .square = true}};
   const UnwrappedMesh whole = unwrap(torus(48, 24), square, 0),
                       offered = unwrap(torus(48, 24), square);
   EXPECT_LT(whole.utilization, 0.7);
@@ -172,7 +173,7 @@ Packed packed(const Shape& shape) {
   context.progress = [&](std::string_view stage, double done) {
     if (stage == "packing" && done < 1) out.last = std::max(out.last, done);
   };
-  auto mesh = unwrap_mesh(view_of(shape), {.page_size = 512, .square = true}, context);
+  auto mesh = unwrap_mesh(view_of(shape), {{.page_size = 512, .square = true}}, context);
   EXPECT_TRUE(mesh.ok()) << mesh.status().message();
   if (mesh.ok()) out.mesh = std::move(*mesh);
   return out;
@@ -223,13 +224,13 @@ TEST(FillPages, ACutThatEvenAFullPageWouldNotPayForIsNotLaidOut) {
 // There is space for the wide gutters of the whole charts, but not for those of pieces.
 TEST(FillPages, ChartsWhosePiecesHaveNoRoomStayWhole) {
   for (const std::int32_t padding : {8, 12, 16}) {
-    const UnwrapOptions wide{.pages = 2, .page_size = 64, .padding = padding};
+    const UnwrapOptions wide{{.pages = 2, .page_size = 64, .padding = padding}};
     EXPECT_EQ(unwrap(grid(16, 16), wide).charts.charts.size(), 1u) << padding;
   }
 }
 
 TEST(FillPages, WhatFillsItsPageStaysWhole) {
-  const UnwrapOptions square{.page_size = 512, .square = true};
+  const UnwrapOptions square{{.page_size = 512, .square = true}};
   EXPECT_EQ(unwrap(cap(64, 24, 0.3), square).charts.charts.size(), 1u);
 }
 

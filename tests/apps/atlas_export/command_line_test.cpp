@@ -126,7 +126,7 @@ TEST(ExportOptions, OfFilesAndRunning) {
   EXPECT_EQ(c.scene, "in.obj");
   EXPECT_EQ(c.options.target, "out.wrl");
   EXPECT_EQ(c.read.illumination_file, "light.txt");
-  EXPECT_EQ(c.report, "r.json");
+  EXPECT_EQ(c.reports, std::vector<std::filesystem::path>{"r.json"});
   EXPECT_TRUE(c.plan_only && c.quiet);
   EXPECT_EQ(c.threads, 3);
   EXPECT_EQ(c.read.metres_per_unit, 0.01);
