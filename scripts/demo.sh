@@ -1,6 +1,6 @@
 #!/bin/sh
-# From a clean clone to a walkable world: installs what is missing, builds what it runs, makes an aircraft cabin of
-# about 100 000 lit triangles and exports it.
+# From a clean clone to a walkable world: installs what is missing, builds what it runs, makes an
+# aircraft cabin of about 100 000 lit triangles and exports it.
 # Usage: scripts/demo.sh [triangles]       (LIBATLAS_SKIP_DEPS=1 leaves the system's packages alone)
 set -eu
 cd "$(dirname "$0")/.."
