@@ -15,16 +15,17 @@ endif()
 add_library(atlas_eigen INTERFACE)
 target_link_libraries(atlas_eigen INTERFACE Eigen3::Eigen)
 target_compile_definitions(atlas_eigen INTERFACE EIGEN_DONT_VECTORIZE)
-if(LIBATLAS_CGAL_PARAMETERIZATION OR LIBATLAS_BUILD_TESTS)
+
+set(libraries "")
+if(LIBATLAS_BUILD_TESTS OR LIBATLAS_CGAL_PARAMETERIZATION)
   set(CGAL_DO_NOT_WARN_ABOUT_CMAKE_BUILD_TYPE TRUE)
-  find_package(CGAL REQUIRED)             # libcgal-dev: a backend, and the tests' oracle
+  find_package(CGAL REQUIRED)             # libcgal-dev: oracle of the tests, optional backend
 endif()
 if(LIBATLAS_CGAL_PARAMETERIZATION)
-  find_library(LIBATLAS_MPFR_LIBRARY mpfr REQUIRED)  # which CGAL needs
+  find_library(LIBATLAS_MPFR_LIBRARY mpfr REQUIRED)
   find_library(LIBATLAS_GMP_LIBRARY gmp REQUIRED)
-  set(ATLAS_FILES_uv mpfr=${LIBATLAS_MPFR_LIBRARY} gmp=${LIBATLAS_GMP_LIBRARY})
+  list(APPEND libraries mpfr=${LIBATLAS_MPFR_LIBRARY} gmp=${LIBATLAS_GMP_LIBRARY})
 endif()
-
 if("reading" IN_LIST ATLAS_COMPONENTS)
   find_package(PkgConfig REQUIRED)
   find_package(nlohmann_json REQUIRED)    # nlohmann-json3-dev: reports
@@ -35,7 +36,7 @@ if("reading" IN_LIST ATLAS_COMPONENTS)
   find_library(LIBATLAS_DRACO_LIBRARY draco REQUIRED)   # libdraco-dev: compressed glTF
   find_path(WEBP_INCLUDE_DIR webp/encode.h REQUIRED)
   find_library(LIBATLAS_WEBP_LIBRARY webp REQUIRED)     # libwebp-dev: pages as WebP
-  set(ATLAS_FILES_reading draco=${LIBATLAS_DRACO_LIBRARY} webp=${LIBATLAS_WEBP_LIBRARY})
+  list(APPEND libraries draco=${LIBATLAS_DRACO_LIBRARY} webp=${LIBATLAS_WEBP_LIBRARY})
   pkg_check_modules(OIIO REQUIRED IMPORTED_TARGET OpenImageIO)  # libopenimageio-dev: image files
 endif()
 if("baking" IN_LIST ATLAS_COMPONENTS)
@@ -44,12 +45,12 @@ if("baking" IN_LIST ATLAS_COMPONENTS)
   add_library(atlas_openmesh INTERFACE)
   target_include_directories(atlas_openmesh SYSTEM INTERFACE ${OPENMESH_INCLUDE_DIR})
   target_link_libraries(atlas_openmesh INTERFACE ${OPENMESH_CORE_LIBRARY})
-  set(ATLAS_FILES_baking OpenMeshCore=${OPENMESH_CORE_LIBRARY})
+  list(APPEND libraries OpenMeshCore=${OPENMESH_CORE_LIBRARY})
 endif()
 
 # Not every system has CMake packages of these libraries, so their files are looked up and become
 # targets. cmake/libatlasConfig.cmake.in makes the same targets for users of the installed library.
-foreach(found IN LISTS ATLAS_FILES_uv ATLAS_FILES_reading ATLAS_FILES_baking)
+foreach(found IN LISTS libraries)
   string(REGEX MATCH "^([^=]*)=(.*)$" found "${found}")
   add_library(libatlas::${CMAKE_MATCH_1} UNKNOWN IMPORTED GLOBAL)
   set_target_properties(libatlas::${CMAKE_MATCH_1} PROPERTIES IMPORTED_LOCATION ${CMAKE_MATCH_2})

@@ -6,7 +6,7 @@
 # pkg-config as a package, or with an option. OpenImageIO is not among them: the module that needs it is
 # loaded when needed (libatlas/image). Left out: what is headers only, and so ends at our own .cpp files.
 set(ATLAS_LINKED TBB::tbb=tbb fmt::fmt=fmt ZLIB::ZLIB=zlib meshoptimizer::meshoptimizer=-lmeshoptimizer
-                 libatlas::draco=-ldraco libatlas::webp=-lwebp libatlas::mpfr=mpfr libatlas::gmp=gmp libatlas::OpenMeshCore=-lOpenMeshCore
+                 libatlas::draco=-ldraco libatlas::webp=libwebp libatlas::mpfr=mpfr libatlas::gmp=gmp libatlas::OpenMeshCore=-lOpenMeshCore
                  Threads::Threads=-lpthread ${CMAKE_DL_LIBS}=-l${CMAKE_DL_LIBS}
                  glfw=glfw3 PkgConfig::EPOXY=epoxy PkgConfig::EGL=egl PkgConfig::IMGUI=imgui)
 set(ATLAS_HEADERS_ONLY glm::glm fmt::fmt-header-only nlohmann_json::nlohmann_json atlas_options)
