@@ -10,13 +10,15 @@ find_package(fmt REQUIRED)                # libfmt-dev: text
 find_package(nlohmann_json REQUIRED)      # nlohmann-json3-dev: reports
 find_package(meshoptimizer REQUIRED)      # libmeshoptimizer-dev: compressed glTF
 find_package(ZLIB REQUIRED)               # zlib1g-dev: gzipped worlds
+find_package(PNG REQUIRED)                # libpng-dev: PNG files
+find_package(JPEG REQUIRED)               # libjpeg-dev: JPEG files
 set(CGAL_DO_NOT_WARN_ABOUT_CMAKE_BUILD_TYPE TRUE)
 find_package(CGAL REQUIRED)               # libcgal-dev: exact predicates
 find_library(LIBATLAS_MPFR_LIBRARY mpfr REQUIRED)  # which CGAL's predicates need
 find_library(LIBATLAS_GMP_LIBRARY gmp REQUIRED)
 find_path(DRACO_INCLUDE_DIR draco/compression/decode.h REQUIRED)
 find_library(LIBATLAS_DRACO_LIBRARY draco REQUIRED)  # libdraco-dev: compressed glTF
-pkg_check_modules(OIIO REQUIRED IMPORTED_TARGET OpenImageIO)  # libopenimageio-dev: image files
+pkg_check_modules(OIIO REQUIRED IMPORTED_TARGET OpenImageIO)  # libopenimageio-dev: other image files
 
 find_path(OPENMESH_INCLUDE_DIR OpenMesh/Core/Mesh/TriMesh_ArrayKernelT.hh REQUIRED)
 find_library(OPENMESH_CORE_LIBRARY OpenMeshCore REQUIRED)     # libopenmesh-dev: half-edges

@@ -5,7 +5,7 @@
 # How each third-party target that a folder names is linked by those who use the installed library.
 # OpenImageIO is not among them: the module that needs it is loaded when needed (libatlas/image).
 # Left out: what is headers only, and so ends at our own .cpp files.
-set(ATLAS_LINK_AS_TARGET TBB::tbb fmt::fmt ZLIB::ZLIB meshoptimizer::meshoptimizer glfw PkgConfig::EPOXY PkgConfig::EGL PkgConfig::IMGUI)
+set(ATLAS_LINK_AS_TARGET TBB::tbb fmt::fmt ZLIB::ZLIB PNG::PNG JPEG::JPEG meshoptimizer::meshoptimizer glfw PkgConfig::EPOXY PkgConfig::EGL PkgConfig::IMGUI)
 set(ATLAS_HEADERS_ONLY glm::glm Eigen3::Eigen nlohmann_json::nlohmann_json atlas_options)
 
 # atlas_gather(TARGET OUTPUT_NAME module...): a library of all the modules' objects.
@@ -112,7 +112,7 @@ function(atlas_install_descriptions view)
           DESTINATION ${package_dir} COMPONENT development)
 
   # Whoever links a static library links what it needs, too.
-  set(needed_packages "tbb fmt zlib mpfr gmp")
+  set(needed_packages "tbb fmt zlib libpng libjpeg mpfr gmp")
   set(needed_libraries "-lOpenMeshCore -ldraco -lmeshoptimizer -lpthread -ldl")
   get_filename_component(openmesh_dir ${OPENMESH_CORE_LIBRARY} DIRECTORY)
   if(NOT openmesh_dir IN_LIST CMAKE_CXX_IMPLICIT_LINK_DIRECTORIES)
