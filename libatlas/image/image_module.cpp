@@ -8,8 +8,11 @@
 #include <memory>
 #include <string_view>
 #include <system_error>
+#include <thread>
 #include <utility>
 #include <vector>
+
+#include "libatlas/core/granted_threads.h"
 
 namespace atlas {
 namespace {
@@ -83,11 +86,24 @@ ImageModule failure() {
     return {nullptr, fmt::format("not enough memory to load {} ({})", LIBATLAS_IMAGE_MODULE, said)};
   }
   return {nullptr,
-          fmt::format("image files need {}, which belongs beside the program or into its ../{}: {}",
+          fmt::format("image files other than PNG and JPEG need {}, which belongs beside the "
+                      "program or into its ../{}: {}",
                       LIBATLAS_IMAGE_MODULE, LIBATLAS_LIBRARY_FOLDER, reason ? reason : "damaged")};
 }
 
+// Some of the module's libraries start threads when they are loaded, four on a machine of two
+// cores, and end the program if they cannot.
+bool threads_can_start() {
+  const std::size_t count = 6 + std::thread::hardware_concurrency();
+  return startable_threads(count) == count;
+}
+
 ImageModule load() {
+  if (!threads_can_start())
+    return {nullptr, fmt::format("image files other than PNG and JPEG need {}, which starts "
+                                 "more threads than the system grants (raise the limit of "
+                                 "processes, ulimit -u)",
+                                 LIBATLAS_IMAGE_MODULE)};
   void* handle = nullptr;
   std::error_code none;
   for (const fs::path& folder : module_folders()) {
@@ -104,10 +120,12 @@ ImageModule load() {
   if (files->mark == image_files_mark()) return {files, {}};
   Dl_info where{};
   const bool known = dladdr(entry, &where) != 0 && where.dli_fname;
-  return {nullptr,
-          fmt::format("image files need the {} that was built with this program; {} is "
-                      "of another build (install both from one)",
-                      LIBATLAS_IMAGE_MODULE, known ? where.dli_fname : "the one that was found")};
+  return {
+      nullptr,
+      fmt::format(
+          "image files other than PNG and JPEG need the {} that was built with this program; {} is "
+          "of another build (install both from one)",
+          LIBATLAS_IMAGE_MODULE, known ? where.dli_fname : "the one that was found")};
 }
 
 }  // namespace
