@@ -180,11 +180,16 @@ void add_run_options(CLI::App& app, ExportCommand& command) {
   const OptionGroup group(app, "Running");
   app.add_option("--report", command.report,
                  "Write a JSON report of every stage; with --plan: of the plan");
+  app.add_flag("--report-charts", command.report_charts,
+               "The report has a row of figures for each chart")
+      ->needs("--report");
   app.add_option("--depfile", command.depfile,
                  "Also write a rule for make and ninja that lists every file that was read");
+  app.add_flag("--durable", command.options.durable,
+               "End only when the disk holds the world, so that it outlasts a power failure");
   app.add_flag("--plan", command.plan_only, "Print what would run and why, and stop");
   add_off_flag(app, "--no-error", command.options.measure_error, "Do not measure the pages' error");
-  app.add_flag("-q,--quiet", command.quiet, "Print errors only");
+  app.add_flag("-q,--quiet", command.quiet, "Print warnings and errors only");
   app.add_option("--threads", command.threads, "Threads; 0: all cores")
       ->check(within(0, 1024))
       ->capture_default_str();
@@ -265,6 +270,8 @@ std::optional<ExportCommand> parse_export_command(int argc, char** argv, int& ex
   const bool as_written = command.options.keep_scene && command.options.charts_only &&
                           lower_extension(command.options.target) == ".obj";
   command.read.srgb_colours = command.options.quantity == Quantity::colour && !as_written;
+  command.words.assign(argv, argv + argc);
+  command.values = option_values(app);
   command.options.larger_plain_page = app.count("--atlas-size") == 0;
   const bool asked = app.count("--atlases") > 0;
   if (asked) command.options.plain_pages = command.options.atlases;

@@ -3,6 +3,9 @@
 
 #include <filesystem>
 #include <optional>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "libatlas/pipeline/export_options.h"
 #include "libatlas/scene/reader.h"
@@ -15,8 +18,11 @@ struct ExportCommand {
   ReadOptions read;
   ExportOptions options;
   std::optional<double> uv_aspect;  // nothing: what the scene's file says of it
-  bool plan_only = false, quiet = false;
+  bool report_charts = false, plan_only = false, quiet = false;
   int threads = 0;
+  // For the report: the words of the command line, and every option with its value.
+  std::vector<std::string> words;
+  std::vector<std::pair<std::string, std::string>> values;
 };
 
 // Parses argv. Returns nothing if the program should end with exit_code: help was asked for, or an

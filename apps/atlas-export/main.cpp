@@ -215,13 +215,15 @@ Status add_depfile(const app::ExportCommand& command, const LoadedScene& loaded,
 Status write_report(ExportReport report, const StageReport& reading,
                     const app::ExportCommand& command, app::Terminal& terminal) {
   if (command.report.empty()) return {};
+  report.command = command.words;
+  report.options = command.values;
   report.scene = command.scene;
   for (std::string& line : report.advice) line = app::with_flag_names(line);
   report.stages.insert(report.stages.begin(), reading);
   report.cpu_seconds += reading.cpu_seconds;
   report.wall_seconds += reading.wall_seconds;
   report.peak_memory = std::max(report.peak_memory, reading.peak_memory);
-  if (Status s = write_json(report, command.report); !s.ok()) return s;
+  if (Status s = write_json(report, command.report, {command.report_charts}); !s.ok()) return s;
   terminal.line(fmt::format("{}: report", command.report.string()));
   return {};
 }

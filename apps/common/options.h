@@ -5,6 +5,8 @@
 #include <CLI/CLI.hpp>
 #include <map>
 #include <string>
+#include <utility>
+#include <vector>
 
 namespace atlas::app {
 
@@ -31,6 +33,10 @@ CLI::Option* add_off_flag(CLI::App& app, const std::string& name, bool& value,
 // Parses the command line, after adding --version. Returns -1 to go on, or the exit code with which
 // the program should end: 0 after the help or the version, 2 after one line about what is wrong.
 int parse(CLI::App& app, int argc, char** argv);
+
+// Returns the options that were given, with their values, and the others that have a default; flags
+// are "true".
+std::vector<std::pair<std::string, std::string>> option_values(const CLI::App& app);
 
 // While it lives, options that are added appear under the heading `name` of --help.
 class OptionGroup {

@@ -103,6 +103,7 @@ struct ExportOptions {
   // Files that appear together with the world, or not at all, such as lists of what it was made
   // from. ExportReport::files does not list them.
   std::vector<ExtraFile> extra_files = {};
+  bool durable = false;  // the disk holds all files before the export returns (AtomicFiles::commit)
   bool measure_error = true;  // compare the finished pages with the input's light
 };
 

@@ -38,6 +38,11 @@ struct PageReport {
 };
 
 struct ExportReport {
+  // What a program was asked for; empty if the library was called. Options are those given, with
+  // their values, and the others that have a default.
+  std::vector<std::string> command = {};
+  std::vector<std::pair<std::string, std::string>> options = {};
+
   // Input
   std::filesystem::path scene = {}, target = {};
   std::uint64_t triangles = 0, vertices = 0, materials = 0, textures = 0, objects = 0;
@@ -115,10 +120,15 @@ struct ExportReport {
   std::vector<std::string> advice = {};  // what the figures mean for the user, and the remedy
 };
 
+struct ReportOptions {
+  bool chart_rows = false;  // a row of figures for each chart, about 1 kB
+};
+
 // Writes the report as JSON (docs/report.md explains every key). The file is written completely or
 // not at all. If the export was not carried out, the file has the plan and the stages so far, but
 // no results.
-Status write_json(const ExportReport& report, const std::filesystem::path& path);
+Status write_json(const ExportReport& report, const std::filesystem::path& path,
+                  const ReportOptions& options = {});
 
 // Returns a line of text for users, such as the following. The seconds are CPU time.
 //   charts  301709 -> 68 charts, L2 1.0012, 99.9 % 1.112  0.82 s  120 MiB

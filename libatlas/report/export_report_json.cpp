@@ -94,20 +94,26 @@ Json json_of(const ChartSet::Timing& t) {
           {"overlaps", t.overlaps_cpu}, {"absorb", t.absorb_cpu},   {"limbs", t.limbs_cpu}};
 }
 
-Json charts_json(const ExportReport& r) {
-  Json list = Json::array();
-  std::uint64_t planar = 0;
-  double widest_cone = 0;
-  for (const Chart& c : r.charts) {
-    planar += c.planar_projection;
-    widest_cone = std::max(widest_cone, c.cone_degrees);
-    list.push_back({{"triangles", c.triangle_count},
+Json rows_of(const std::vector<Chart>& charts) {
+  Json rows = Json::array();
+  for (const Chart& c : charts) {
+    rows.push_back({{"triangles", c.triangle_count},
                     {"size", {c.size.x, c.size.y}},
                     {"area", c.distortion.surface_area},
                     {"cone_degrees", c.cone_degrees},
                     {"planar", c.planar_projection},
                     {"kept", c.kept},
                     {"distortion", json_of(c.distortion)}});
+  }
+  return rows;
+}
+
+Json charts_json(const ExportReport& r) {
+  std::uint64_t planar = 0;
+  double widest_cone = 0;
+  for (const Chart& c : r.charts) {
+    planar += c.planar_projection;
+    widest_cone = std::max(widest_cone, c.cone_degrees);
   }
   return {
       {"count", r.charts.size()},
@@ -130,8 +136,7 @@ Json charts_json(const ExportReport& r) {
         {"misoriented_edges", r.repairs.misoriented_edges},
         {"split_charts", r.repairs.split_charts},
         {"kept_charts", r.repairs.kept_charts},
-        {"reflattened_charts", r.repairs.reflattened_charts}}},
-      {"charts", list}};
+        {"reflattened_charts", r.repairs.reflattened_charts}}}};
 }
 
 Json light_json(const ExportReport& r) {
@@ -234,8 +239,9 @@ Json error_json(const Fidelity& f, ToneOperator tone) {
 }
 
 // Values that were not measured have no key, because a 0 would read as a perfect result.
-void add_results(const ExportReport& r, Json& json) {
+void add_results(const ExportReport& r, const ReportOptions& options, Json& json) {
   json["charts"] = charts_json(r);
+  if (options.chart_rows) json["charts"]["charts"] = rows_of(r.charts);
   json["packing"] = pages_json(r);
   if (r.plan.runs("grouping")) json["grouping"] = grouping_json(r.grouping);
   if (r.full_texels > 0) {
@@ -256,14 +262,27 @@ void add_results(const ExportReport& r, Json& json) {
   json["advice"] = r.advice;
 }
 
+Json command_json(const ExportReport& r) {
+  Json options = Json::object();
+  for (const auto& [name, value] : r.options) options[name] = value;
+  return {{"words", r.command}, {"options", options}};
+}
+
 }  // namespace
 
-Status write_json(const ExportReport& r, const std::filesystem::path& path) {
-  Json json{{"target", r.target.string()}, {"wall_s", r.wall_seconds},
-            {"cpu_s", r.cpu_seconds},      {"peak_mib", double(r.peak_memory) / kMebibyte},
-            {"scene", scene_json(r)},      {"plan", json_of(r.plan)},
-            {"stages", stages_json(r)},    {"skipped", skipped_json(r.plan)}};
-  if (r.carried_out) add_results(r, json);
+Status write_json(const ExportReport& r, const std::filesystem::path& path,
+                  const ReportOptions& options) {
+  Json json{{"version", LIBATLAS_VERSION}};
+  if (!r.command.empty()) json["command"] = command_json(r);
+  json.update({{"target", r.target.string()},
+               {"wall_s", r.wall_seconds},
+               {"cpu_s", r.cpu_seconds},
+               {"peak_mib", double(r.peak_memory) / kMebibyte},
+               {"scene", scene_json(r)},
+               {"plan", json_of(r.plan)},
+               {"stages", stages_json(r)},
+               {"skipped", skipped_json(r.plan)}});
+  if (r.carried_out) add_results(r, options, json);
   // Names come from files and may hold bytes that are not UTF-8. Such bytes are replaced, because
   // otherwise they would end the export.
   return write_file(path, json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n");

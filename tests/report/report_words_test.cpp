@@ -55,6 +55,29 @@ TEST(ReportWords, NamesOfFilesAndPagesAreThoseWritten) {
   EXPECT_EQ(file["advice"], json({"first", "second"}));
 }
 
+TEST(ReportWords, TheCommandIsThatOfTheProgram) {
+  ExportReport r = complete_report();
+  r.command = {"atlas-export", "a b.obj", "-q"};
+  r.options = {{"--mips", "2"}, {"--quiet", "true"}};
+  const json file = written(r);
+  EXPECT_FALSE(file["version"].get<std::string>().empty());
+  EXPECT_EQ(file["command"]["words"], json(r.command));
+  EXPECT_EQ(file["command"]["options"], json::parse(R"({"--mips": "2", "--quiet": "true"})"));
+  r.command.clear();
+  EXPECT_FALSE(written(r).contains("command")) << "the library was called";
+}
+
+TEST(ReportWords, RowsOfChartsComeOnRequest) {
+  const test::TempFolder folder;
+  ExportReport r = complete_report();
+  r.charts.resize(3);
+  EXPECT_EQ(written(r)["charts"]["charts"].size(), 3u);
+  ASSERT_TRUE(write_json(r, folder / "short.json").ok());
+  const json file = json::parse(test::TempFolder::read(folder / "short.json"));
+  EXPECT_EQ(file["charts"]["count"], 3);
+  EXPECT_FALSE(file["charts"].contains("charts"));
+}
+
 void add_keys(const json& value, std::set<std::string>& keys) {
   if (value.is_object())
     for (const auto& [key, member] : value.items()) {
@@ -70,6 +93,7 @@ TEST(ReportWords, ThePageExplainsEveryKey) {
   r.full_texels = 1;
   r.defects.defects = {{DefectKind::illumination_negative, 1, {}}};
   r.plan.steps.push_back({"baking", false, "why not"});
+  r.options.clear();  // their names are those of the program
   std::set<std::string> keys;
   add_keys(written(r), keys);
   ASSERT_GT(keys.size(), 100u);
