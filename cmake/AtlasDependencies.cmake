@@ -18,6 +18,8 @@ find_library(LIBATLAS_MPFR_LIBRARY mpfr REQUIRED)  # which CGAL's predicates nee
 find_library(LIBATLAS_GMP_LIBRARY gmp REQUIRED)
 find_path(DRACO_INCLUDE_DIR draco/compression/decode.h REQUIRED)
 find_library(LIBATLAS_DRACO_LIBRARY draco REQUIRED)  # libdraco-dev: compressed glTF
+find_path(WEBP_INCLUDE_DIR webp/encode.h REQUIRED)
+find_library(LIBATLAS_WEBP_LIBRARY webp REQUIRED)    # libwebp-dev: pages as WebP
 pkg_check_modules(OIIO REQUIRED IMPORTED_TARGET OpenImageIO)  # libopenimageio-dev: other image files
 
 find_path(OPENMESH_INCLUDE_DIR OpenMesh/Core/Mesh/TriMesh_ArrayKernelT.hh REQUIRED)
@@ -29,12 +31,13 @@ target_link_libraries(atlas_openmesh INTERFACE ${OPENMESH_CORE_LIBRARY})
 # Not every system has CMake packages of these libraries, so their files are looked up and become
 # targets. cmake/libatlasConfig.cmake.in makes the same targets for users of the installed library.
 foreach(found mpfr=${LIBATLAS_MPFR_LIBRARY} gmp=${LIBATLAS_GMP_LIBRARY}
-              draco=${LIBATLAS_DRACO_LIBRARY} OpenMeshCore=${OPENMESH_CORE_LIBRARY})
+              draco=${LIBATLAS_DRACO_LIBRARY} webp=${LIBATLAS_WEBP_LIBRARY} OpenMeshCore=${OPENMESH_CORE_LIBRARY})
   string(REGEX MATCH "^([^=]*)=(.*)$" found "${found}")
   add_library(libatlas::${CMAKE_MATCH_1} UNKNOWN IMPORTED GLOBAL)
   set_target_properties(libatlas::${CMAKE_MATCH_1} PROPERTIES IMPORTED_LOCATION ${CMAKE_MATCH_2})
 endforeach()
 set_target_properties(libatlas::draco PROPERTIES INTERFACE_INCLUDE_DIRECTORIES ${DRACO_INCLUDE_DIR})
+set_target_properties(libatlas::webp PROPERTIES INTERFACE_INCLUDE_DIRECTORIES ${WEBP_INCLUDE_DIR})
 
 if(LIBATLAS_BUILD_TESTS)
   find_package(GTest REQUIRED)            # libgtest-dev

@@ -113,7 +113,7 @@ function(atlas_install_descriptions view)
 
   # Whoever links a static library links what it needs, too.
   set(needed_packages "tbb fmt zlib libpng libjpeg mpfr gmp")
-  set(needed_libraries "-lOpenMeshCore -ldraco -lmeshoptimizer -lpthread -ldl")
+  set(needed_libraries "-lOpenMeshCore -ldraco -lwebp -lmeshoptimizer -lpthread -ldl")
   get_filename_component(openmesh_dir ${OPENMESH_CORE_LIBRARY} DIRECTORY)
   if(NOT openmesh_dir IN_LIST CMAKE_CXX_IMPLICIT_LINK_DIRECTORIES)
     string(PREPEND needed_libraries "-L${openmesh_dir} ")

@@ -15,7 +15,7 @@ build/examples/cabin/atlas-make-cabin --triangles "$triangles" -o out/cabin.obj 
 build/apps/atlas-export/atlas-export out/cabin.obj -o out/cabin.wrl --up z --report out/report.json
 
 echo
-echo "The world:  $PWD/out/cabin.wrl   (any VRML97 viewer opens it: view3dscene, FreeWRL, Blender, ...)"
+echo "The world:  $PWD/out/cabin.wrl   (for any VRML97 viewer, such as view3dscene)"
 echo "The report: $PWD/out/report.json"
 echo "A picture:  $PWD/out/cabin.png"
 if [ -x build/apps/atlas-play/atlas-play ]; then

@@ -3,7 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <charconv>
 #include <string>
+#include <string_view>
+#include <system_error>
 
 #include "apps/common/options.h"
 #include "apps/common/program.h"
@@ -140,6 +143,16 @@ void add_texture_options(CLI::App& app, ExportOptions& options, RawText& raw) {
       ->check(within(-64, 64));
 }
 
+int parse_quality(const std::string& text) {
+  if (text == "lossless") return 0;
+  int quality = 0;
+  const char* end = text.data() + text.size();
+  const auto [read, error] = std::from_chars(text.data(), end, quality);
+  if (error != std::errc() || read != end || quality < 1 || quality > 100)
+    throw CLI::ValidationError("--quality", text + ": give 1..100, or lossless");
+  return quality;
+}
+
 void add_page_options(CLI::App& app, ExportOptions& options) {
   const OptionGroup group(app, "Pages and mesh");
   app.add_option("--shifts", options.shifts, "Sub-texel sample grids of the bake")
@@ -171,6 +184,24 @@ void add_page_options(CLI::App& app, ExportOptions& options) {
       ->check(positive());
   app.add_flag("--exr", options.exr, "Also write scene-linear OpenEXR pages")
       ->excludes("--charts-only");
+  CLI::Option* format =
+      app.add_option("--texture-format", options.texture_format,
+                     "Format of the pages' images: png, or webp, which is smaller (.gltf, .glb)")
+          ->transform(
+              choices<TextureFormat>({{"png", TextureFormat::png}, {"webp", TextureFormat::webp}}))
+          ->type_name("NAME")
+          ->default_str("png");
+  app.add_option_function<std::string>(
+         "--quality",
+         [&options](const std::string& text) { options.webp_quality = parse_quality(text); },
+         "Of WebP images: 1 (smallest) to 100, or lossless")
+      ->type_name("N|lossless")
+      ->default_str("lossless")
+      ->needs(format);
+  app.add_flag(
+      "--compress", options.compress,
+      "Pack the mesh (EXT_meshopt_compression); positions and uvs of worlds become 16 bits "
+      "where a quarter of --slip allows it (.gltf, .glb)");
   app.add_option("--png-level", options.png_compression, "PNG compression, 0..9; 1 to 5 are one")
       ->capture_default_str()
       ->check(within(0, 9));
@@ -178,11 +209,16 @@ void add_page_options(CLI::App& app, ExportOptions& options) {
 
 void add_run_options(CLI::App& app, ExportCommand& command) {
   const OptionGroup group(app, "Running");
-  app.add_option("--report", command.report,
-                 "Write a JSON report of every stage; with --plan: of the plan");
-  app.add_flag("--report-charts", command.report_charts,
-               "The report has a row of figures for each chart")
+  app.add_option("--report", command.reports,
+                 "Write a report of every stage, or with --plan of the plan: a page to read if it "
+                 "ends in .html, else JSON; may be given several times")
+      ->allow_extra_args(false);
+  app.add_flag("--report-charts", command.request.chart_rows,
+               "The JSON report has a row of figures for each chart")
       ->needs("--report");
+  app.add_option("--false-colour", command.options.false_colour,
+                 "Also draw the light in false colours, from above and on the pages (.png)")
+      ->excludes("--charts-only");
   app.add_option("--depfile", command.depfile,
                  "Also write a rule for make and ninja that lists every file that was read");
   app.add_flag("--durable", command.options.durable,
@@ -193,6 +229,16 @@ void add_run_options(CLI::App& app, ExportCommand& command) {
   app.add_option("--threads", command.threads, "Threads; 0: all cores")
       ->check(within(0, 1024))
       ->capture_default_str();
+}
+
+// Returns a word as a shell takes it.
+std::string quoted(const std::string& word) {
+  constexpr std::string_view kPlain =
+      "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-./=:,+%@";
+  if (!word.empty() && word.find_first_not_of(kPlain) == std::string::npos) return word;
+  std::string out = "'";
+  for (const char c : word) out += c == '\'' ? std::string("'\\''") : std::string(1, c);
+  return out + "'";
 }
 
 constexpr double kMostPages = 1e6;              // the limit of --atlases
@@ -238,6 +284,10 @@ std::optional<std::string> interpret(const RawText& raw, ExportCommand& command)
 
 }  // namespace
 
+bool is_page(const std::filesystem::path& report) {
+  return lower_extension(report) == ".html";
+}
+
 std::optional<ExportCommand> parse_export_command(int argc, char** argv, int& exit_code) {
   CLI::App app(
       "Turns a scene whose vertices carry illumination into a walkable world with texture atlases.",
@@ -260,18 +310,20 @@ std::optional<ExportCommand> parse_export_command(int argc, char** argv, int& ex
     print_error("atlas-export", "--output is required (--help lists the options)");
     return std::nullopt;
   }
-  if (command.plan_only && command.quiet && command.report.empty()) {
+  if (command.plan_only && command.quiet && command.reports.empty()) {
     print_error("atlas-export",
                 "--plan with --quiet tells nothing (leave one out, or add --report)");
     return std::nullopt;
   }
+  for (int i = 0; i < argc; ++i) command.request.command += (i > 0 ? " " : "") + quoted(argv[i]);
+  command.request.options = option_values(app);
+  command.options.report_pictures =
+      !command.plan_only && std::any_of(command.reports.begin(), command.reports.end(), is_page);
   // An OBJ that keeps the scene has the colours of its vertices as the scene's file has them,
   // unless they become a lightmap.
   const bool as_written = command.options.keep_scene && command.options.charts_only &&
                           lower_extension(command.options.target) == ".obj";
   command.read.srgb_colours = command.options.quantity == Quantity::colour && !as_written;
-  command.words.assign(argv, argv + argc);
-  command.values = option_values(app);
   command.options.larger_plain_page = app.count("--atlas-size") == 0;
   const bool asked = app.count("--atlases") > 0;
   if (asked) command.options.plain_pages = command.options.atlases;

@@ -7,7 +7,7 @@ namespace atlas::app {
 namespace {
 
 using FlagName = std::pair<std::string_view, std::string_view>;
-constexpr std::array<FlagName, 29> kFlagNames{{
+constexpr std::array<FlagName, 33> kFlagNames{{
     {"ExportOptions::atlases", "--atlases"},
     {"ExportOptions::lightmap_pages", "--atlases"},
     {"ExportOptions::plain_pages", "--atlases"},
@@ -20,6 +20,10 @@ constexpr std::array<FlagName, 29> kFlagNames{{
     {"ExportOptions::shifts", "--shifts"},
     {"ExportOptions::simplify_slip", "--slip"},
     {"ExportOptions::png_compression", "--png-level"},
+    {"ExportOptions::texture_format", "--texture-format"},
+    {"ExportOptions::webp_quality", "--quality"},
+    {"ExportOptions::compress", "--compress"},
+    {"ExportOptions::false_colour", "--false-colour"},
     {"ExportOptions::charts_only", "--charts-only"},
     {"ExportOptions::keep_scene", "--keep-scene"},
     {"ExportOptions::uv_set", "--uv-set"},

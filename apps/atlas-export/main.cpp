@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <iterator>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include "apps/atlas-export/command_line.h"
@@ -18,6 +20,7 @@
 #include "libatlas/pipeline/export_world.h"
 #include "libatlas/pipeline/lightmap.h"
 #include "libatlas/pipeline/plan.h"
+#include "libatlas/report/html_report.h"
 
 namespace {
 
@@ -76,7 +79,7 @@ void name_old_pages(const ExportReport& report, const ExportOptions& options,
     if (!old.empty()) terminal.line(app::old_pages_text(old, run, "this world"));
   };
   if (!embeds_images(report.target) || options.keep_scene)
-    name(report.pages.size(), ".png", "export with more pages");
+    name(report.pages.size(), page_extension(options.texture_format), "export with more pages");
   const bool exr = options.exr;
   name(exr ? report.pages.size() : 0, ".exr", exr ? "export with more pages" : "export with --exr");
 }
@@ -119,7 +122,8 @@ std::vector<std::filesystem::path> images_there(const Scene& scene, const Export
     std::filesystem::directory_iterator at(folder, error);
     for (; !error && at != std::filesystem::directory_iterator(); at.increment(error)) {
       const std::filesystem::path ending = at->path().extension();
-      const bool page = (ending == ".png" && (!embeds_images(target) || options.keep_scene)) ||
+      const bool page = (ending == page_extension(options.texture_format) &&
+                         (!embeds_images(target) || options.keep_scene)) ||
                         (ending == ".exr" && options.exr);
       if (page && named_as_page(at->path(), target)) there.push_back(at->path());
     }
@@ -130,7 +134,7 @@ std::vector<std::filesystem::path> images_there(const Scene& scene, const Export
 Status check_no_image(const char* flag, const std::filesystem::path& output,
                       const std::filesystem::path& target) {
   const std::string ending = lower_extension(output);
-  const bool image = ending == ".png" || ending == ".exr" || ending == ".jpg";
+  const bool image = ending == ".png" || ending == ".webp" || ending == ".exr" || ending == ".jpg";
   if (image && !target.empty() &&
       (named_as_page(output, target) || named_as_page(output, target, "texture")))
     return {ErrorCode::bad_option,
@@ -139,20 +143,32 @@ Status check_no_image(const char* flag, const std::filesystem::path& output,
   return {};
 }
 
+// Returns the files that are written beside the world, with their options.
+std::vector<std::pair<const char*, std::filesystem::path>> outputs_beside(
+    const app::ExportCommand& command) {
+  std::vector<std::pair<const char*, std::filesystem::path>> outputs;
+  for (const std::filesystem::path& report : command.reports)
+    outputs.emplace_back("--report", report);
+  outputs.emplace_back("--depfile", command.depfile);
+  outputs.emplace_back("--false-colour", command.options.false_colour);
+  return outputs;
+}
+
 Status check_outputs(const app::ExportCommand& command) {
-  const std::filesystem::path &target = command.options.target, &report = command.report;
-  const auto& light = command.read.illumination_file;
-  if (Status s = app::check_output(target, {command.scene, light, report}); !s.ok()) return s;
-  if (Status s = app::check_output(file_beside(target), {command.scene, light}); !s.ok()) return s;
-  if (Status s = app::check_output(report, {command.scene, light, file_beside(target)}); !s.ok())
-    return s;
-  const std::filesystem::path& depfile = command.depfile;
-  if (Status s =
-          app::check_output(depfile, {command.scene, light, target, file_beside(target), report});
-      !s.ok())
-    return s;
-  if (Status s = check_no_image("--report", report, target); !s.ok()) return s;
-  return check_no_image("--depfile", depfile, target);
+  const std::filesystem::path& target = command.options.target;
+  std::vector<std::filesystem::path> others{command.scene, command.read.illumination_file};
+  if (Status s = app::check_output(file_beside(target), others); !s.ok()) return s;
+  others.insert(others.end(), command.reports.begin(), command.reports.end());
+  if (Status s = app::check_output(target, others); !s.ok()) return s;
+  others.resize(2);
+  others.push_back(target);
+  others.push_back(file_beside(target));
+  for (const auto& [flag, output] : outputs_beside(command)) {
+    if (Status s = app::check_output(output, others); !s.ok()) return s;
+    if (Status s = check_no_image(flag, output, target); !s.ok()) return s;
+    others.push_back(output);
+  }
+  return {};
 }
 
 // Refuses outputs that would overwrite files of the scene: its material files, buffers and textures
@@ -163,16 +179,19 @@ Status check_files_stay(const LoadedScene& loaded, const app::ExportCommand& com
   std::vector<std::filesystem::path> known = loaded.files;
   known.insert(known.end(), loaded.unread_files.begin(), loaded.unread_files.end());
   for (const Texture& texture : loaded.scene.textures) known.push_back(texture.path);
-  for (const std::filesystem::path& file : known)
-    for (const std::filesystem::path& output :
-         {target, file_beside(target), command.report, command.depfile})
+  const auto beside = outputs_beside(command);
+  for (const std::filesystem::path& file : known) {
+    for (const std::filesystem::path& output : {target, file_beside(target)})
       if (Status s = app::check_output(output, {file}); !s.ok()) return s;
+    for (const auto& [flag, output] : beside)
+      if (Status s = app::check_output(output, {file}); !s.ok()) return s;
+  }
   if (command.options.keep_scene && lower_extension(target) == ".gltf")
     for (const std::filesystem::path& image : scene_texture_paths(loaded.scene, target))
-      for (const std::filesystem::path& output : {command.report, command.depfile})
+      for (const auto& [flag, output] : beside)
         if (Status s = app::check_output(output, {image}); !s.ok()) return s;
-  known.insert(known.end(),
-               {command.scene, command.read.illumination_file, command.report, command.depfile});
+  known.insert(known.end(), {command.scene, command.read.illumination_file});
+  for (const auto& [flag, output] : beside) known.push_back(output);
   for (const std::filesystem::path& image : images_there(loaded.scene, command.options))
     for (const std::filesystem::path& file : known) {
       std::error_code error;
@@ -210,21 +229,23 @@ Status add_depfile(const app::ExportCommand& command, const LoadedScene& loaded,
   return {};
 }
 
-// Writes the report, if asked for, with the export's own figures and those of reading, which came
-// before it.
+// Writes the reports that were asked for, with the export's own figures and those of reading, which
+// came before it.
 Status write_report(ExportReport report, const StageReport& reading,
                     const app::ExportCommand& command, app::Terminal& terminal) {
-  if (command.report.empty()) return {};
-  report.command = command.words;
-  report.options = command.values;
+  if (command.reports.empty()) return {};
   report.scene = command.scene;
   for (std::string& line : report.advice) line = app::with_flag_names(line);
   report.stages.insert(report.stages.begin(), reading);
   report.cpu_seconds += reading.cpu_seconds;
   report.wall_seconds += reading.wall_seconds;
   report.peak_memory = std::max(report.peak_memory, reading.peak_memory);
-  if (Status s = write_json(report, command.report, {command.report_charts}); !s.ok()) return s;
-  terminal.line(fmt::format("{}: report", command.report.string()));
+  for (const std::filesystem::path& path : command.reports) {
+    const Status written = app::is_page(path) ? write_html(report, command.request, path)
+                                              : write_json(report, path, command.request);
+    if (!written.ok()) return written;
+    terminal.line(fmt::format("{}: report", path.string()));
+  }
   return {};
 }
 

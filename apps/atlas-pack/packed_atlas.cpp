@@ -4,6 +4,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include "apps/atlas-pack/frame_names.h"
+
 namespace atlas::app {
 namespace {
 
@@ -37,6 +39,16 @@ Json other_pages(const PackedAtlas& atlas, std::uint32_t page) {
   for (std::uint32_t p = 0; p < atlas.images.size(); ++p)
     if (p != page) names.push_back(data_of_page(atlas.images[p]));
   return names;
+}
+
+// Returns the animations of all pages, since their frames may lie on several.
+Json animations_in(const PackedAtlas& atlas) {
+  std::vector<std::string_view> names;
+  for (const PackedItem& item : atlas.items) names.push_back(item.name);
+  Json animations = Json::object();
+  for (Animation& a : animations_of(names))
+    animations.get_ref<Json::object_t&>().emplace_back(a.name, std::move(a.frames));
+  return animations;
 }
 
 }  // namespace
@@ -89,6 +101,10 @@ std::string to_json(const PackedAtlas& atlas, DataFormat format, std::uint32_t p
       frames.push_back(std::move(named));
     }
   }
+  // Lists of rectangles have none, even if their names end in numbers.
+  if (page != kAllPages)
+    if (Json animations = animations_in(atlas); !animations.empty())
+      root["animations"] = std::move(animations);
   Json& meta = root["meta"];
   meta["app"] = "atlas-pack";
   meta["version"] = "1.0";

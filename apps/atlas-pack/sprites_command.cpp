@@ -5,6 +5,7 @@
 #include <tuple>
 
 #include "apps/atlas-pack/commands.h"
+#include "apps/atlas-pack/frame_names.h"
 #include "apps/atlas-pack/preview.h"
 #include "apps/common/depfile.h"
 #include "apps/common/files.h"
@@ -29,6 +30,15 @@ bool is_image(const fs::path& path) {
   static const char* const known[] = {".png", ".jpg",  ".jpeg", ".tga", ".bmp",
                                       ".tif", ".tiff", ".gif",  ".webp"};
   const std::string ending = lower_extension(path);
+  return std::find(std::begin(known), std::end(known), ending) != std::end(known);
+}
+
+// Whether an ending is that of images for graphics hardware or browsers, or of a format of sprite
+// data, that this program does not write. Other endings may be part of a name ("hero.v2").
+bool is_other_format(const std::string& ending) {
+  static const char* const known[] = {".ktx", ".ktx2",  ".basis", ".dds", ".pvr",   ".avif",
+                                      ".jxl", ".heic",  ".heif",  ".jp2", ".exr",   ".hdr",
+                                      ".svg", ".plist", ".xml",   ".csv", ".atlas", ".tpsheet"};
   return std::find(std::begin(known), std::end(known), ending) != std::end(known);
 }
 
@@ -66,7 +76,7 @@ void trim(Sprite& sprite, int threshold) {
 }
 
 struct SpriteFolder {
-  std::vector<fs::path> images;   // in the order of names
+  std::vector<fs::path> images;   // in natural order
   std::vector<fs::path> folders;  // those that were listed
 };
 
@@ -104,7 +114,7 @@ Result<SpriteFolder> list_sprites(const fs::path& folder, const Context& context
     return Status(
         ErrorCode::bad_input,
         fmt::format("{}: holds no image (png, jpg, tga, bmp, tif, gif or webp)", folder.string()));
-  std::sort(found.images.begin(), found.images.end());
+  std::sort(found.images.begin(), found.images.end(), natural_less);
   std::sort(found.folders.begin(), found.folders.end());
   return found;
 }
@@ -164,16 +174,17 @@ void blit(const Sprite& sprite, const Placement& at, int extrude, Image8& page) 
 }
 
 // Returns the command with the base name of the outputs: NAME.png and NAME.json both mean NAME.
-// Refuses other image formats, because pages are PNG images.
+// Refuses the names of other formats, because pages are PNG images and their data are JSON.
 Result<PackCommand> with_base_name(const PackCommand& command) {
   const std::string ending = lower_extension(command.output);
   PackCommand c = command;
   if (ending == ".png" || ending == ".json")
     c.output.replace_extension();
-  else if (is_image(c.output))
-    return Status(
-        ErrorCode::bad_option,
-        fmt::format("{}: pages are PNG images (name them NAME or NAME.png)", c.output.string()));
+  else if (is_image(c.output) || is_other_format(ending))
+    return Status(ErrorCode::bad_option,
+                  fmt::format("{}: pages are PNG images, and their data are JSON (name them NAME, "
+                              "NAME.png or NAME.json)",
+                              c.output.string()));
   return c;
 }
 

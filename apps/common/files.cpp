@@ -31,7 +31,7 @@ bool same_file(const fs::path& a, const fs::path& b) {
 
 }  // namespace
 
-Status check_output(const fs::path& output, std::initializer_list<fs::path> others) {
+Status check_output(const fs::path& output, const std::vector<fs::path>& others) {
   if (output.empty()) return {};
   // Other programs take it for standard output, so a file of that name would help nobody.
   if (output == "-")

@@ -5,7 +5,6 @@
 #include <cstddef>
 #include <filesystem>
 #include <functional>
-#include <initializer_list>
 #include <span>
 #include <string>
 #include <string_view>
@@ -19,7 +18,7 @@ namespace atlas::app {
 // Checks that `output` can be written and is none of `others`: the files that are read, and other
 // outputs. Empty paths are ignored. Errors: io, bad_option.
 Status check_output(const std::filesystem::path& output,
-                    std::initializer_list<std::filesystem::path> others);
+                    const std::vector<std::filesystem::path>& others);
 
 // Reads a whole file or pipe of up to 1 GiB; the writer of a pipe may take its time until the
 // context is cancelled. Errors: not_found, io, bad_input, cancelled.

@@ -71,7 +71,7 @@ void check_drago(CheckList& list) {
   for (double ratio = 10; ratio < 1e12; ratio *= 1.5) {  // white relative to the log-average
     LuminanceStatistics statistics;
     statistics.lit_area = statistics.log_average = statistics.mean = 1;
-    statistics.maximum = statistics.percentile99 = ratio;
+    statistics.maximum = statistics.percentile98 = ratio;
     ToneOptions options;
     options.op = ToneOperator::drago;
     const Result<ToneMapping> tone = make_tone_mapping(options, statistics);

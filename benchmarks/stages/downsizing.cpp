@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "benchmarks/support/staged.h"
-#include "libatlas/bake/placement.h"
+#include "libatlas/uvs/placement.h"
 
 namespace atlas::bench {
 

@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "benchmarks/support/staged.h"
-#include "libatlas/bake/placement.h"
+#include "libatlas/uvs/placement.h"
 
 namespace atlas::bench {
 
@@ -38,6 +38,7 @@ void bench_packing(const StageRun& run) {
     row.size_in = densities.size();
     row.unit = "charts -> pages";
     LayoutOptions options;
+    options.alignment = 4;
     options.pages = pages;
     options.page_size = staged.settings.page_size;
     options.padding = gutter_pad(2);

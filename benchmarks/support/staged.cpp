@@ -1,7 +1,7 @@
 #include "benchmarks/support/staged.h"
 
-#include "libatlas/bake/placement.h"
 #include "libatlas/pipeline/plan.h"
+#include "libatlas/uvs/placement.h"
 
 namespace atlas::bench {
 
@@ -61,6 +61,7 @@ Status Staged::need_layout() {
   if (layout) return {};
   if (const Status status = need_textures(); !status.ok()) return status;
   LayoutOptions options;
+  options.alignment = 4;
   options.pages = settings.pages;
   options.page_size = settings.page_size;
   options.padding = gutter_pad(2);

@@ -10,8 +10,8 @@
 #include "benchmarks/support/own_process.h"
 #include "benchmarks/support/work.h"
 #include "libatlas/charts/charts.h"
-#include "libatlas/pipeline/page_layout.h"
 #include "libatlas/texture/chart_textures.h"
+#include "libatlas/unwrap/page_layout.h"
 
 namespace atlas::bench {
 

@@ -18,7 +18,8 @@ int main(int argc, char** argv) {
   interior.mean_rgb = {0.6f, 0.6f, 0.6f};
   interior.minimum_log = std::log(0.005);
   interior.maximum_log = std::log(3);
-  interior.percentile99 = 2;
+  interior.middle = 0.3;
+  interior.percentile98 = 2;
   interior.maximum = 30;
   std::vector<ToneMapping> curves;
   for (const ToneOperator op : {ToneOperator::linear, ToneOperator::reinhard, ToneOperator::drago,

@@ -48,7 +48,7 @@ Builder model(double edge_length, bool coarse) {
 
 }  // namespace
 
-std::vector<AreaLight> cabin_lights() {
+Lights cabin_lights() {
   std::vector<AreaLight> lights;
   const auto materials = cabin_materials();
   for (const Strip& strip : light_strips()) {
@@ -68,11 +68,8 @@ std::vector<AreaLight> cabin_lights() {
   for (int side : {-1, 1})
     for (int bay = 0; bay < kBays; ++bay)
       if (has_window(bay)) lights.push_back(window_light(side, bay));
-  return lights;
-}
-
-Sun cabin_sun() {
-  return {glm::normalize(glm::vec3(-0.34f, -1.0f, 0.17f)), glm::vec3(2100, 1640, 1050), 0.008f};
+  return {std::move(lights),
+          {glm::normalize(glm::vec3(-0.34f, -1.0f, 0.17f)), glm::vec3(2100, 1640, 1050), 0.008f}};
 }
 
 Mesh build_cabin(std::size_t triangles, std::size_t limit, const atlas::Context& context) {

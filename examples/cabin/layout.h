@@ -73,8 +73,6 @@ void add_seats(Builder& builder);
 void add_door(Builder& builder);
 void add_galley(Builder& builder);
 
-// Returns the lights that belong to the shapes above.
-std::vector<AreaLight> cabin_lights();
 // A strip of light along x that extends across from `from` to `to`, in `pieces` of equal length.
 struct Strip {
   double x0, x1;

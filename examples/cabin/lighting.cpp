@@ -7,6 +7,7 @@
 #include <glm/geometric.hpp>
 #include <numbers>
 #include <tuple>
+#include <utility>
 
 #include "libatlas/core/parallel.h"
 
@@ -103,15 +104,15 @@ float polygon_form_factor(std::span<const glm::vec3> corners, glm::vec3 point, g
   return std::max(0.0f, sum / (2 * kPi));
 }
 
-Lighting::Lighting(const Tracer& tracer, const LightingOptions& options)
-    : tracer_(tracer), options_(options), lights_(cabin_lights()), sun_(cabin_sun()) {}
+Lighting::Lighting(const Tracer& tracer, Lights lights, const LightingOptions& options)
+    : tracer_(tracer), options_(options), lights_(std::move(lights.areas)), sun_(lights.sun) {}
 
 glm::vec3 Lighting::direct_at(const Vertex& vertex) const {
   const glm::vec3 n = vertex.normal, origin = ray_origin(vertex);
   const glm::vec2 shift = rotation_at(vertex.ray_start, options_.seed);
   glm::vec3 sum(0);
   const float sun_cosine = glm::dot(n, sun_.towards);
-  if (sun_cosine > 0) {
+  if (sun_cosine > 0 && sun_.illuminance != glm::vec3(0)) {
     const auto [t, b] = frame_of(sun_.towards);
     const int samples = std::max(4, options_.direct_samples / 6);
     int open = 0;

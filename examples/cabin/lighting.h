@@ -12,9 +12,9 @@
 namespace cabin {
 
 struct Sun {
-  glm::vec3 towards;      // unit
-  glm::vec3 illuminance;  // lux on a surface that faces it
-  float radius;           // of its disc, radians
+  glm::vec3 towards{0, 0, 1};  // unit
+  glm::vec3 illuminance{0};    // lux on a surface that faces it
+  float radius = 0.008f;       // of its disc, radians
 };
 
 struct LightingOptions {
@@ -23,10 +23,15 @@ struct LightingOptions {
   int indirect_samples = 384;  // gathering rays per vertex of the coarse mesh
 };
 
+struct Lights {
+  std::vector<AreaLight> areas;  // at most 128
+  Sun sun = {};                  // none if its illuminance is 0
+};
+
 class Lighting {
  public:
-  // Keeps references, so both must outlive the object.
-  Lighting(const Tracer& tracer, const LightingOptions& options);
+  // Keeps references to the tracer and the options, so both must outlive the object.
+  Lighting(const Tracer& tracer, Lights lights, const LightingOptions& options);
 
   // Returns the illuminance directly from the lights, in lux. The same position gives the same
   // result, independently of other calls and of their order.
@@ -48,7 +53,8 @@ class Lighting {
   Sun sun_;
 };
 
-Sun cabin_sun();
+// Returns the strips, the sky in the windows, and the sun.
+Lights cabin_lights();
 
 // Gives the vertices of emitting surfaces a part of their own exitance as light, so that lamps look
 // lit. To be called at the end, when no more light is gathered.

@@ -22,7 +22,7 @@ void light_cabin(Mesh& mesh, std::size_t triangles, const LightingOptions& optio
   const Shell shell = shell_of(mesh);
   if (context.cancelled()) return;
   const Tracer tracer(shell.positions, shell.triangles);
-  const Lighting lighting(tracer, options);
+  const Lighting lighting(tracer, cabin_lights(), options);
   lighting.light_directly(mesh, 0, context);
   if (context.cancelled()) return;
   context.say("direct light");

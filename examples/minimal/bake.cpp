@@ -10,9 +10,9 @@
 #include "libatlas/bake/fidelity.h"
 #include "libatlas/charts/charts.h"
 #include "libatlas/image/image_io.h"
-#include "libatlas/pipeline/page_layout.h"
 #include "libatlas/scene/check_scene.h"
 #include "libatlas/texture/chart_textures.h"
+#include "libatlas/unwrap/page_layout.h"
 
 namespace {
 

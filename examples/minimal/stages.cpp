@@ -16,10 +16,10 @@
 #include "libatlas/exporters/viewpoint.h"
 #include "libatlas/exporters/world.h"
 #include "libatlas/image/image_io.h"
-#include "libatlas/pipeline/page_layout.h"
 #include "libatlas/scene/reader.h"
 #include "libatlas/simplify/simplify.h"
 #include "libatlas/texture/chart_textures.h"
+#include "libatlas/unwrap/page_layout.h"
 
 namespace {
 

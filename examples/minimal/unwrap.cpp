@@ -4,7 +4,7 @@
 #include <cstdio>
 #include <vector>
 
-#include "libatlas/pipeline/unwrap.h"
+#include "libatlas/unwrap/unwrap.h"
 
 struct Vertex {
   float position[3], uv[2];

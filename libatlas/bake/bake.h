@@ -4,11 +4,11 @@
 #include <cstdint>
 #include <span>
 
-#include "libatlas/bake/placement.h"
 #include "libatlas/core/context.h"
 #include "libatlas/core/image.h"
 #include "libatlas/core/status.h"
 #include "libatlas/texture/chart_textures.h"
+#include "libatlas/uvs/placement.h"
 
 namespace atlas {
 

@@ -63,6 +63,7 @@ struct Sums {
   double square[3] = {0, 0, 0}, square_all = 0, scene_square = 0;
   std::uint64_t all = 0, scene_count = 0;
   std::vector<float> worst;
+  std::vector<WorstPlace> places;  // one per lit sample
 
   void add(const Sample& s) {
     if (!s.found) {
@@ -85,6 +86,7 @@ struct Sums {
     ++(lit ? out.lit : out.unlit);
     if (!lit) return;
     worst.push_back(largest);
+    places.push_back({s.page, s.texel, want, s.shown, largest});
     if (std::max({w[0], w[1], w[2]}) >= 1) {
       ++out.clipped;
     } else if (tone.op == ToneOperator::linear) {
@@ -108,7 +110,23 @@ struct Sums {
     out.p95 = percentile(worst, 0.95);
     out.p999 = percentile(worst, 0.999);
     out.maximum = *std::max_element(worst.begin(), worst.end());
+    choose_worst();
     return out;
+  }
+
+  void choose_worst() {
+    std::stable_sort(places.begin(), places.end(),
+                     [](const WorstPlace& a, const WorstPlace& b) { return a.error > b.error; });
+    for (const WorstPlace& place : places) {
+      if (out.worst.size() == kWorstPlaces || !(place.error > 0)) break;
+      const bool apart =
+          std::none_of(out.worst.begin(), out.worst.end(), [&](const WorstPlace& other) {
+            return other.page == place.page &&
+                   std::hypot(other.texel.x - place.texel.x, other.texel.y - place.texel.y) <
+                       kWorstDistance;
+          });
+      if (apart) out.worst.push_back(place);
+    }
   }
 };
 
@@ -250,7 +268,7 @@ void FidelityMeter::add_page(std::int32_t page, const Image8& display) {
 }
 
 Fidelity FidelityMeter::result() const {
-  Sums sums{state_->tone, {}, {}, 0, 0, 0, 0, {}};
+  Sums sums{state_->tone, {}, {}, 0, 0, 0, 0, {}, {}};
   for (const Sample& s : state_->samples) sums.add(s);
   return sums.finish();
 }

@@ -1,15 +1,18 @@
 // Measures how far the finished atlases are from the light that they were made from.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <span>
+#include <vector>
 
 #include "libatlas/bake/bake.h"
-#include "libatlas/bake/placement.h"
 #include "libatlas/core/context.h"
 #include "libatlas/core/image.h"
 #include "libatlas/core/status.h"
+#include "libatlas/core/vec.h"
+#include "libatlas/uvs/placement.h"
 
 namespace atlas {
 
@@ -20,6 +23,17 @@ struct FidelityOptions {
 
 // The PSNR of samples without any error, dB.
 inline constexpr double kPerfectDecibels = 999;
+
+// A sample that is shown badly. Colours are display values, 0..1.
+struct WorstPlace {
+  std::int32_t page = -1;
+  Vec2f texel = {};  // position on the page
+  Vec3f wanted = {}, shown = {};
+  float error = 0;  // absolute, in the worst channel
+};
+
+inline constexpr std::size_t kWorstPlaces = 8;
+inline constexpr float kWorstDistance = 32;
 
 // The error of the lit samples, unless said otherwise.
 struct Fidelity {
@@ -38,6 +52,8 @@ struct Fidelity {
   // The 95th and 99.9th percentile and the maximum of the absolute display error in a sample's
   // worst channel.
   double p95 = 0, p999 = 0, maximum = 0;
+  // The worst samples, the worst first: at most kWorstPlaces, at least kWorstDistance texels apart.
+  std::vector<WorstPlace> worst = {};
 };
 
 // Measures the error of pages that are given one by one, in any order, so that they need not be in

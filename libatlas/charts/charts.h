@@ -27,6 +27,9 @@ struct MeshView {
   // 3 a triangle, or empty: not 0 if its edge from that corner to the next is a seam, across which
   // no chart continues. The triangle on either side may say so.
   std::span<const std::uint8_t> seams = {};
+  // 1 a position, or empty: positions that lie at one place are one vertex only if these are equal,
+  // so that no chart continues from one object to another, wherever they lie.
+  std::span<const std::uint32_t> objects = {};
 };
 
 enum class ChartPreset { fast, standard, best };

@@ -13,6 +13,7 @@
 #include "libatlas/core/degrees.h"
 #include "libatlas/core/glm_bridge.h"
 #include "libatlas/core/parallel.h"
+#include "libatlas/core/sort_total.h"
 #include "libatlas/param/injectivity.h"
 #include "libatlas/param/orient.h"
 
@@ -190,10 +191,10 @@ class GivenSet {
     take_over();
     if (!context_.cancelled() && result_.reflattened > 0) flatten_anew();
     if (context_.cancelled()) return {};
-    std::sort(result_.charts.begin(), result_.charts.end(),
-              [](const FlatChart& a, const FlatChart& b) {
-                return a.triangles.front() < b.triangles.front();
-              });
+    sort_total(result_.charts.begin(), result_.charts.end(),
+               [](const FlatChart& a, const FlatChart& b) {
+                 return a.triangles.front() < b.triangles.front();
+               });
     return std::move(result_);
   }
 

@@ -31,7 +31,8 @@ struct Viewpoint {
 
 struct Page {
   std::string image = {};  // file name beside the world, see safe_file_name(); empty: no texture
-  // Path of the finished image while the world is written. Only .glb needs it, to embed the image.
+  // Path of the finished image while the world is written, .png or, in glTF, .webp. Only .glb needs
+  // it, to embed the image.
   std::filesystem::path image_source = {};
   std::vector<std::uint32_t> indices = {};     // 3 per triangle, into World::positions
   std::vector<std::uint32_t> uv_indices = {};  // 3 per triangle, into World::uvs
@@ -42,11 +43,11 @@ struct Page {
 
 // The pages with the light of a scene that is kept, addressed by the world's uvs.
 struct Lightmap {
-  // File names beside the world, one a page: .png files, sRGB-encoded, and if asked for .exr files
-  // of the light itself.
+  // File names beside the world, one a page: .png or .webp files, sRGB-encoded, and if asked for
+  // .exr files of the light itself.
   std::vector<std::string> images = {}, linear = {};
-  // The light that the .png shows as white, in the unit of Scene::illumination; 0: it does not grow
-  // in proportion to light, because a tone curve bends it.
+  // The light that the former show as white, in the unit of Scene::illumination; 0: it does not
+  // grow in proportion to light, because a tone curve bends it.
   double white = 0;
   std::vector<std::uint32_t> triangle_page = {};  // 1 per triangle; empty: all are on the first
 };
@@ -72,6 +73,10 @@ struct World {
   // For `scene` in glTF: the new uvs become the set TEXCOORD_<uv_set>, 1..7, in place of what it
   // holds. 0: the first set that is free. OBJ has one set and ignores this.
   int uv_set = 0;
+  // For glTF: packs attributes and indices (EXT_meshopt_compression). In a world without `scene`,
+  // positions become whole numbers of 16 bits (KHR_mesh_quantization) if that moves none by more
+  // than this, in scene units, along an axis, and so do uvs of pages with images. Empty: plain.
+  std::optional<double> compress_slip = {};
   // For `scene`: with a lightmap, vertices are written without light, by which viewers would
   // multiply it. glTF names it as asset.extras.lightmap (images, linear, texCoord and white), and
   // the page of a primitive, if there are several, as its extras.lightmap. OBJ names it in a
@@ -128,11 +133,11 @@ Result<WorldFile> write_obj(const World& world, const std::filesystem::path& pat
                             AtomicFiles& files, const Context& context);
 
 // Writes glTF 2.0: a .glb with everything embedded, or a .gltf with a .bin beside it. Materials
-// with an image are KHR_materials_unlit and double-sided, except for those of Page::one_sided,
-// which are primitives of their own; the root node turns the scene's up axis to +Y, scales to
-// metres and adds the origin, since glTF prescribes axis and unit. An origin farther from zero than
-// 128 times the world's size is added by a node above all others, kFarOriginNode: engines that hold
-// single floats need it moved to zero.
+// with an image (a .webp by EXT_texture_webp, which viewers then must know) are KHR_materials_unlit
+// and double-sided, except for those of Page::one_sided, which are primitives of their own; the
+// root node turns the scene's up axis to +Y, scales to metres and adds the origin, since glTF
+// prescribes axis and unit. An origin farther from zero than 128 times the world's size is added by
+// a node above all others, kFarOriginNode: engines that hold single floats need it moved to zero.
 //
 // If World::scene has a source (Scene::source), that file is written again: its nodes, materials,
 // attributes, skins and animations stay as they are. The new uvs are in World::uv_set, else in the
@@ -156,6 +161,9 @@ Result<WorldFile> write_gltf(const World& world, const std::filesystem::path& pa
 Result<WorldFile> write_world(const World& world, const std::filesystem::path& path,
                               AtomicFiles& files, const Context& context);
 Status check_world_extension(const std::filesystem::path& path);
+
+// Returns whether a world of this extension can be compressed and can have images of WebP.
+bool holds_compressed(const std::filesystem::path& path);
 
 // Returns whether a world of this extension can keep World::scene; the writers of the others refuse
 // it (bad_option).

@@ -20,6 +20,7 @@ struct Format {
   bool viewpoint;                                                 // holds World::viewpoint
   bool scene;                                                     // can keep World::scene
   bool embeds;                                                    // holds the pages itself
+  bool compressed;                                                // see holds_compressed()
   std::filesystem::path (*beside)(const std::filesystem::path&);  // see file_beside()
 };
 
@@ -36,11 +37,12 @@ std::filesystem::path buffer_beside(const std::filesystem::path& path) {
 }
 
 // A new format is one more line here.
-constexpr std::array<Format, 5> kFormats{{{".wrl", write_vrml, true, false, false, nothing_beside},
-                                          {".wrz", write_vrml, true, false, false, nothing_beside},
-                                          {".obj", write_obj, false, true, false, materials_beside},
-                                          {".gltf", write_gltf, true, true, false, buffer_beside},
-                                          {".glb", write_gltf, true, true, true, nothing_beside}}};
+constexpr std::array<Format, 5> kFormats{
+    {{".wrl", write_vrml, true, false, false, false, nothing_beside},
+     {".wrz", write_vrml, true, false, false, false, nothing_beside},
+     {".obj", write_obj, false, true, false, false, materials_beside},
+     {".gltf", write_gltf, true, true, false, true, buffer_beside},
+     {".glb", write_gltf, true, true, true, true, nothing_beside}}};
 
 const Format* format_of(const std::filesystem::path& path) {
   const std::string extension = lower_extension(path);
@@ -71,6 +73,11 @@ bool holds_viewpoint(const std::filesystem::path& path) {
 bool holds_scene(const std::filesystem::path& path) {
   const Format* format = format_of(path);
   return format != nullptr && format->scene;
+}
+
+bool holds_compressed(const std::filesystem::path& path) {
+  const Format* format = format_of(path);
+  return format != nullptr && format->compressed;
 }
 
 bool embeds_images(const std::filesystem::path& path) {

@@ -11,7 +11,7 @@
 #include "libatlas/core/status.h"
 #include "libatlas/pack/grouping.h"
 #include "libatlas/pack/outline.h"
-#include "libatlas/pack/pack.h"
+#include "libatlas/pack/pages.h"
 
 namespace atlas {
 
@@ -20,21 +20,13 @@ struct FitItem {
   double width = 0, height = 0;
 };
 
-struct FitOptions {
-  std::uint32_t pages = 1;        // N, at least 1
-  std::int32_t page_size = 2048;  // S in texels; alignment + 2 padding .. 2^20
+// N is `pages`, and S is `page_size`, which is alignment + 2 padding .. 2^20.
+struct FitOptions : PageOptions {
   // Page sides are powers of two <= S; otherwise multiples of alignment.
   bool power_of_two = true;
-  bool square = false;
-  // Texels kept free on each side of a chart; mip levels 0..M need 2^(M-1).
-  std::int32_t padding = 2;
-  // Boxes begin and end at multiples of this; mip levels 0..M need 2^M.
-  std::int32_t alignment = 4;
   // A side never becomes smaller than min(this, its size at scale 1).
   std::int32_t minimum_side = 16;
-  double max_scale = 1;        // > 0; the scale that is found is at most this
-  bool allow_rotation = true;  // allows quarter turns
-  PackPreset preset = PackPreset::standard;
+  double max_scale = 1;  // > 0; the scale that is found is at most this
   // Number of full packings that the search for the scale may use; at least 2. If four directions
   // find no room, the search with more than four directions may use as many again.
   std::uint32_t max_packings = 25;

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <bit>
 
+#include "libatlas/core/sort_total.h"
 #include "libatlas/pack/rectangles/cells.h"
 #include "libatlas/pack/rectangles/page_shape.h"
 
@@ -176,8 +177,8 @@ Result<PackResult> pack_rects(std::span<const Extent> items, const PackOptions& 
     else
       result.placements[active.ids[k]] = {p.page, cells.texel(p.x), cells.texel(p.y), p.rotated};
   }
-  std::sort(result.unplaced.begin(), result.unplaced.end(),
-            [](const UnplacedItem& a, const UnplacedItem& b) { return a.item < b.item; });
+  sort_total(result.unplaced.begin(), result.unplaced.end(),
+             [](const UnplacedItem& a, const UnplacedItem& b) { return a.item < b.item; });
   describe(items, options, result);
   return result;
 }

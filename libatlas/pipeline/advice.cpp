@@ -153,9 +153,9 @@ std::string on_large_colours(const ExportReport& report) {
 
 std::string on_black(const ExportReport& report) {
   return fmt::format(
-      "light of {:.3g}, the brightest that is seen but for 1 %, is shown black; white begins at "
+      "light of {:.3g}, the brightest that is seen but for 2 %, is shown black; white begins at "
       "{:.3g} (a smaller ToneOptions::white or a higher ToneOptions::exposure_stops)",
-      double(report.luminance.percentile99), report.exposure_white);
+      double(report.luminance.percentile98), report.exposure_white);
 }
 
 // Light of ten times the median as white shows the median as a dark grey (89 of 255).
@@ -226,7 +226,7 @@ std::vector<std::string> advice_on_tone(const ExportReport& report, const Export
     else if (options.quantity == Quantity::colour)
       lines.push_back(on_large_colours(report));
   }
-  if (!measured && is_black(light.percentile99))
+  if (!measured && is_black(light.percentile98))
     lines.push_back(on_black(report));
   else if (is_black(light.median) && options.quantity != Quantity::colour)
     lines.push_back(on_dark(report));

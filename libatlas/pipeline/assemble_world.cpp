@@ -5,18 +5,14 @@
 #include <algorithm>
 #include <utility>
 
-#include "libatlas/uvs/round_uvs.h"
-
 namespace atlas {
 
-AssembledWorld assemble_world(const Scene& scene, const PlacedCharts& placed, const WorldMesh& mesh,
-                              bool baked) {
-  AssembledWorld assembled;
-  World& world = assembled.world;
+World assemble_world(const Scene& scene, const PlacedCharts& placed, const WorldMesh& mesh,
+                     std::vector<Vec2f> uvs) {
+  World world;
   world.origin = scene.origin;
   world.positions = scene.positions;
-  assembled.thin_triangles = round_uvs(page_uvs(placed), mesh.uv_indices, world.uvs,
-                                       baked ? texel_of_longest(placed.pages) : 1);
+  world.uvs = std::move(uvs);
   world.pages.resize(placed.pages.size());
   for (std::size_t t = 0; t < mesh.triangle_chart.size(); ++t) {
     const ChartPlacement& placement = placed.placements[mesh.triangle_chart[t]];
@@ -26,7 +22,7 @@ AssembledWorld assemble_world(const Scene& scene, const PlacedCharts& placed, co
                            &mesh.uv_indices[3 * t] + 3);
     if (!mesh.one_sided.empty()) page.one_sided.push_back(mesh.one_sided[t]);
   }
-  return assembled;
+  return world;
 }
 
 void make_tiles(const PlacedCharts& placed, World& world) {

@@ -1,9 +1,9 @@
 // Internal: turns charts on pages into the mesh that exporters write.
 #pragma once
 
-#include <cstddef>
 #include <cstdint>
 #include <string>
+#include <vector>
 
 #include "libatlas/charts/charted_mesh.h"
 #include "libatlas/charts/charts.h"
@@ -13,17 +13,10 @@
 
 namespace atlas {
 
-struct AssembledWorld {
-  World world;
-  std::size_t thin_triangles = 0;  // turned over or closed by rounding uvs, see round_uvs.h
-};
-
-// Makes one world page per atlas page, with the triangles in input order and uvs as fractions of
-// the page. With `baked`, the pages already hold light. Rounding then moves no uv farther than a
-// texel of the longest page, which the gutters tolerate at all but the coarsest of their mip
-// levels.
-AssembledWorld assemble_world(const Scene& scene, const PlacedCharts& placed, const WorldMesh& mesh,
-                              bool baked);
+// Makes one world page per atlas page, with the triangles in input order. `uvs` are fractions of
+// the pages, one per uv of the charts.
+World assemble_world(const Scene& scene, const PlacedCharts& placed, const WorldMesh& mesh,
+                     std::vector<Vec2f> uvs);
 
 // Turns the pages of a world without images into UDIM tiles, of which all triangles share one page.
 void make_tiles(const PlacedCharts& placed, World& world);

@@ -3,6 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cerrno>
+#include <cmath>
+#include <fstream>
 #include <mutex>
 #include <optional>
 #include <utility>
@@ -10,8 +13,10 @@
 #include "libatlas/core/background.h"
 #include "libatlas/core/clock.h"
 #include "libatlas/core/parallel.h"
+#include "libatlas/core/write_error.h"
 #include "libatlas/exporters/world.h"
 #include "libatlas/image/image_io.h"
+#include "libatlas/image/webp.h"
 
 namespace atlas {
 namespace {
@@ -32,6 +37,17 @@ std::vector<std::vector<ChartPlacement>> placements_by_page(const PageLayout& la
   std::vector<std::vector<ChartPlacement>> pages(layout.pages.size());
   for (const ChartPlacement& p : layout.placements) pages[std::size_t(p.page)].push_back(p);
   return pages;
+}
+
+// Returns decibels over all channels; of equal images, those of an error below half a step in one
+// texel.
+double psnr_of(const Image8& a, const Image8& b) {
+  double sum = 0.25;
+  for (std::size_t i = 0; i < a.texels.size(); ++i) {
+    const double d = double(a.texels[i]) - double(b.texels[i]);
+    sum += d * d;
+  }
+  return 10 * std::log10(255.0 * 255.0 * double(a.texels.size()) / sum);
 }
 
 // The pages that are baked at once take at most this many bytes together, and so do those that wait
@@ -103,11 +119,11 @@ class PageBaker {
   }
 
   Status add_pages(std::size_t first, std::size_t count, Background& writing) {
-    std::vector<std::optional<Result<BakedPage>>> baked(count);
+    std::vector<std::optional<Result<FinishedPage>>> baked(count);
     {
       const BookedTime watch(wall_seconds, result_.bake_wall);
       parallel_for(context_, count, 1,
-                   [&](std::size_t i, std::size_t) { baked[i].emplace(bake(first + i)); });
+                   [&](std::size_t i, std::size_t) { baked[i].emplace(finish(first + i)); });
     }
     if (context_.cancelled()) return Status::cancelled();
     for (std::size_t i = 0; i < count; ++i) {
@@ -117,28 +133,28 @@ class PageBaker {
     return {};
   }
 
-  Status add_page(std::size_t p, BakedPage baked, Background& writing) {
-    result_.covered_texels += baked.covered_texels;
+  Status add_page(std::size_t p, FinishedPage baked, Background& writing) {
+    result_.covered_texels += baked.page.covered_texels;
     if (meter_) {
       const BookedTime cpu_watch(own_cpu_seconds, result_.measure_cpu);
       const BookedTime wall_watch(wall_seconds, result_.measure_wall);
-      meter_->add_page(std::int32_t(p), baked.display);
+      meter_->add_page(std::int32_t(p), baked.page.display);
     }
-    const std::string name = page_name(options_.target, p) + ".png";
+    const std::string name =
+        page_name(options_.target, p) + page_extension(options_.texture_format);
     std::filesystem::path target = options_.target.parent_path() / name;
-    const std::filesystem::path png = files_.path_for(target);
+    const std::filesystem::path image = files_.path_for(target);
     const std::filesystem::path exr =
         options_.exr ? files_.path_for(target.replace_extension(".exr")) : "";
-    result_.image_sources.push_back(png);
+    result_.image_sources.push_back(image);
     result_.pages.push_back({name, layout_.pages[p].width, layout_.pages[p].height,
-                             std::uint32_t(pages_[p].size()), 0});
+                             std::uint32_t(pages_[p].size()), 0, baked.psnr});
     const BookedTime watch(wall_seconds, result_.write_wall);
     if (p + 1 == pages_.size()) only_images_are_left();
-    return writing.add([this, p, png, exr, page = std::move(baked)]() -> Status {
+    return writing.add([this, p, image, exr, baked = std::move(baked)]() -> Status {
       const BookedTime own_watch(own_cpu_seconds, write_cpu_[p]);
-      if (Status s = write_png(png, page.display, {options_.png_compression, true}); !s.ok())
-        return s;
-      if (Status s = exr.empty() ? Status() : write_exr(exr, page.linear); !s.ok()) return s;
+      if (Status s = write_image(baked, image); !s.ok()) return s;
+      if (Status s = exr.empty() ? Status() : write_exr(exr, baked.page.linear); !s.ok()) return s;
       const std::lock_guard lock(reporting_);
       ++written_;
       if (baked_) report_images();
@@ -155,6 +171,41 @@ class PageBaker {
   }
 
   void report_images() const { images_.report("images", double(written_) / double(pages_.size())); }
+
+  // A page, and its file if that is WebP. A lossy one shows what its file does.
+  struct FinishedPage {
+    BakedPage page = {};
+    std::vector<std::uint8_t> webp = {};
+    std::optional<double> psnr = {};
+  };
+
+  Result<FinishedPage> finish(std::size_t p) {
+    Result<BakedPage> baked = bake(p);
+    if (!baked.ok()) return baked.status();
+    FinishedPage finished{std::move(*baked)};
+    if (options_.texture_format != TextureFormat::webp) return finished;
+    Image8& display = finished.page.display;
+    auto webp = encode_webp(display, {options_.webp_quality});
+    if (!webp.ok()) return webp.status();
+    finished.webp = std::move(*webp);
+    if (options_.webp_quality == 0) return finished;
+    Result<Image8> shown = decode_webp(finished.webp, page_name(options_.target, p));
+    if (!shown.ok()) return shown.status();
+    finished.psnr = psnr_of(display, *shown);
+    display = std::move(*shown);
+    return finished;
+  }
+
+  Status write_image(const FinishedPage& baked, const std::filesystem::path& path) const {
+    if (options_.texture_format == TextureFormat::png)
+      return write_png(path, baked.page.display, {options_.png_compression, true});
+    std::ofstream file(path, std::ios::binary);
+    file.write(reinterpret_cast<const char*>(baked.webp.data()),
+               std::streamsize(baked.webp.size()));
+    file.close();
+    if (file) return {};
+    return {ErrorCode::io, fmt::format("{}: {}", path.string(), write_error(errno))};
+  }
 
   Result<BakedPage> bake(std::size_t p) {
     Context context = context_;

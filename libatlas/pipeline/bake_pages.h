@@ -12,8 +12,8 @@
 #include "libatlas/bake/fidelity.h"
 #include "libatlas/core/atomic_file.h"
 #include "libatlas/pipeline/export_options.h"
-#include "libatlas/pipeline/page_layout.h"
 #include "libatlas/report/export_report.h"
+#include "libatlas/unwrap/page_layout.h"
 
 namespace atlas {
 
@@ -37,9 +37,9 @@ struct PagesToBake {
 };
 
 // Bakes the pages and writes their images, which are named after the target (safe_file_name):
-// world.wrl gives world_0.png, world_1.png, ... and, with ExportOptions::exr, world_0.exr, ...
-// Their temporary names are collected in `files`. `images` gets the progress of the images that are
-// still to be written when all pages are baked.
+// world.wrl gives world_0.png, world_1.png, ... (.webp, if asked for) and, with ExportOptions::exr,
+// world_0.exr, ... Their temporary names are collected in `files`. `images` gets the progress of
+// the images that are still to be written when all pages are baked.
 Result<BakedPages> bake_pages(const PagesToBake& pages, AtomicFiles& files, const Context& context,
                               const Context& images);
 

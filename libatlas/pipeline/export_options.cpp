@@ -6,8 +6,10 @@
 #include <bit>
 #include <cmath>
 
-#include "libatlas/bake/placement.h"
 #include "libatlas/core/file_extension.h"
+#include "libatlas/exporters/world.h"
+#include "libatlas/image/webp.h"
+#include "libatlas/uvs/placement.h"
 
 namespace atlas {
 namespace {
@@ -29,7 +31,31 @@ Status check_udim(const ExportOptions& o) {
   return {};
 }
 
+Status check_weight(const ExportOptions& o) {
+  const bool webp = o.texture_format == TextureFormat::webp;
+  if ((webp || o.compress) && !holds_compressed(o.target)) {
+    return {ErrorCode::bad_option,
+            fmt::format("ExportOptions::{}: only glTF holds that (write .gltf or .glb)",
+                        webp ? "texture_format" : "compress")};
+  }
+  if (o.webp_quality < 0 || o.webp_quality > 100)
+    return out_of_range("webp_quality", "within 1..100, or 0");
+  if (o.webp_quality > 0 && !webp) {
+    return {
+        ErrorCode::bad_option,
+        "ExportOptions::webp_quality: PNG files are lossless (set ExportOptions::texture_format "
+        "to webp)"};
+  }
+  if (webp && o.atlas_size > kLongestWebpSide)
+    return out_of_range("atlas_size", "at most 8192 for images of WebP");
+  return {};
+}
+
 }  // namespace
+
+const char* page_extension(TextureFormat format) {
+  return format == TextureFormat::webp ? ".webp" : ".png";
+}
 
 Status check_options(const ExportOptions& o) {
   if (Status s = check_world_extension(o.target); !s.ok()) return s;
@@ -75,6 +101,9 @@ Status check_options(const ExportOptions& o) {
   if (o.png_compression < 0 || o.png_compression > 9) {
     return out_of_range("png_compression", "within 0..9");
   }
+  if (!o.false_colour.empty() && lower_extension(o.false_colour) != ".png")
+    return out_of_range("false_colour", "the name of a .png file");
+  if (Status s = check_weight(o); !s.ok()) return s;
   if (Status s = check_options(o.charts); !s.ok()) return s;
   return check_options(o.tone);
 }

@@ -25,6 +25,15 @@ struct ExtraFile {
 // Gutters for more mip levels than these would take most of the pages.
 constexpr std::int32_t kMostMipLevels = 5;
 
+// The format of the pages' images for viewers.
+enum class TextureFormat {
+  png,
+  webp,  // smaller; only in glTF (EXT_texture_webp)
+};
+
+// Returns ".png" or ".webp".
+const char* page_extension(TextureFormat format);
+
 struct ExportOptions {
   // The extension chooses the format: .wrl, .wrz, .obj, .gltf, .glb. Images are written beside it.
   std::filesystem::path target = {};
@@ -84,7 +93,12 @@ struct ExportOptions {
   // silhouettes move. With 0.15, it loses 1.8 dB and has 2.5 times the triangles.
   double simplify_slip = 0.15;
   Up up = Up::y;
-  bool exr = false;                  // also write scene-linear OpenEXR pages
+  bool exr = false;  // also write scene-linear OpenEXR pages
+  TextureFormat texture_format = TextureFormat::png;
+  int webp_quality = 0;  // 1..100: lossy, as WebpOptions::quality; 0: lossless
+  // Packs the mesh of a glTF file, see World::compress_slip. Positions slip by a quarter of
+  // simplify_slip at most.
+  bool compress = false;
   std::int32_t png_compression = 3;  // zlib level 0..9; 1 to 5 are the same (PngOptions::smooth)
 
   bool charts_only = false;  // make charts and uvs only: bake no light, write no image
@@ -104,7 +118,10 @@ struct ExportOptions {
   // from. ExportReport::files does not list them.
   std::vector<ExtraFile> extra_files = {};
   bool durable = false;  // the disk holds all files before the export returns (AtomicFiles::commit)
-  bool measure_error = true;  // compare the finished pages with the input's light
+  // Also draw the light in false colours, from above and on the pages, as a PNG file. Needs light.
+  std::filesystem::path false_colour = {};
+  bool report_pictures = false;  // make ExportReport::pictures
+  bool measure_error = true;     // compare the finished pages with the input's light
 };
 
 // Checks every range documented above, and those of charts and tone. The message names the field

@@ -12,25 +12,30 @@
 #include "libatlas/core/clock.h"
 #include "libatlas/core/parallel.h"
 #include "libatlas/core/progress.h"
+#include "libatlas/core/srgb.h"
 #include "libatlas/image/image_io.h"
 #include "libatlas/pipeline/advice.h"
 #include "libatlas/pipeline/assemble_world.h"
 #include "libatlas/pipeline/bake_pages.h"
-#include "libatlas/pipeline/fill_pages.h"
+#include "libatlas/pipeline/false_colour.h"
+#include "libatlas/pipeline/finish_mesh.h"
 #include "libatlas/pipeline/layout_options.h"
 #include "libatlas/pipeline/longest_sides.h"
 #include "libatlas/pipeline/more_mip_levels.h"
-#include "libatlas/pipeline/page_layout.h"
-#include "libatlas/pipeline/part_gaps.h"
+#include "libatlas/pipeline/report_pictures.h"
 #include "libatlas/pipeline/size_textures.h"
 #include "libatlas/pipeline/stage_recorder.h"
 #include "libatlas/pipeline/suit_pages.h"
+#include "libatlas/pipeline/texture_gaps.h"
 #include "libatlas/pipeline/write_export.h"
 #include "libatlas/scene/check_scene.h"
 #include "libatlas/scene/uv_page.h"
 #include "libatlas/simplify/simplify.h"
 #include "libatlas/texture/chart_textures.h"
 #include "libatlas/texture/light_seams.h"
+#include "libatlas/unwrap/fill_pages.h"
+#include "libatlas/unwrap/page_layout.h"
+#include "libatlas/unwrap/part_gaps.h"
 
 namespace atlas {
 namespace {
@@ -80,6 +85,7 @@ class Export {
     if (plan_.simplify) {
       if (Status s = simplify(); !s.ok()) return s;
     }
+    if (Status s = finish(); !s.ok()) return s;
     if (Status s = write(); !s.ok()) return s;
     report_.carried_out = true;
     for (std::string& line : advice_on(report_, options_))
@@ -160,8 +166,11 @@ class Export {
     report_.luminance = *statistics;
     report_.tone = tone_;
     report_.exposure_white = double(tone_.white) / tone_.scale;
-    record_.finish({scene_.triangle_count(), 1, "tone curve",
-                    fmt::format("white {:.4g}", report_.exposure_white)});
+    const auto median = static_cast<float>(report_.luminance.median);
+    record_.finish(
+        {scene_.triangle_count(), 1, "tone curve",
+         fmt::format("white {:.4g}, the median {:.4g} shown as {} of 255", report_.exposure_white,
+                     median, quantize8(tone_.display({median, median, median}).y))});
     return {};
   }
 
@@ -191,9 +200,9 @@ class Export {
     sizing_ = sized->sizing;
     TextureResult& textures = sized->textures;
     const PagesOfCharts pages{view_of(scene_), options_.charts.max_stretch,
-                              double(options_.atlases) * options_.atlas_size * options_.atlas_size,
-                              texture.max_side};
-    report_.opened_charts = open_part_gaps(pages, textures.charts, charts_, context).charts;
+                              double(options_.atlases) * options_.atlas_size * options_.atlas_size};
+    const TexturesOfCharts opened{textures.charts, texture.max_side};
+    report_.opened_charts = open_texture_gaps(pages, opened, charts_, context).charts;
     if (context.cancelled()) return Status::cancelled();
     report_charts();
     for (const ChartTexture& t : textures.charts) {
@@ -277,6 +286,10 @@ class Export {
     if (charts_.charts.size() > uncut)
       quality += fmt::format(", cut into {}", charts_.charts.size());
     record_.finish({uncut, layout_.pages.size(), "pages", quality});
+    for (const ChartPlacement& p : layout_.placements) {
+      report_.chart_pages.push_back(p.page);
+      report_.chart_densities.push_back((p.texels_per_unit.x + p.texels_per_unit.y) / 2);
+    }
     if (!plan_.bake) {
       for (const Extent& page : layout_.pages) {
         report_.pages.push_back({"", page.width, page.height, 0, 0});
@@ -345,18 +358,40 @@ class Export {
     return {};
   }
 
+  // Draws the pictures that were asked for, while the pages' images are still at hand.
+  Status draw() {
+    if (options_.report_pictures) {
+      Result<ReportPictures> pictures =
+          report_pictures({charts_, layout_, image_sources_, report_.fidelity.worst}, context_);
+      if (!pictures.ok()) return files_.told_by_target(pictures.status());
+      report_.pictures = std::move(*pictures);
+    }
+    if (options_.false_colour.empty()) return {};
+    return files_.told_by_target(
+        write_png(files_.path_for(options_.false_colour),
+                  draw_false_colours(scene_, options_.up, charts_, layout_), {}));
+  }
+
+  Status finish() {
+    const Context& context = record_.begin("uvs");
+    const SimplifiedMesh* coarse = coarse_ ? &*coarse_ : nullptr;
+    finished_ =
+        finish_mesh({scene_, options_, charts_, layout_, coarse, plan_.bake}, report_, context);
+    if (context.cancelled()) return Status::cancelled();
+    record_.finish({charts_.uvs.size(), report_.triangles_out, "triangles",
+                    fmt::format("99.9 % {:.3f} as written", report_.written_stretch_999)});
+    return {};
+  }
+
   Status write() {
     const Context& context = record_.begin("writing");
-    const ExportToWrite made{scene_,
-                             options_,
-                             charts_,
-                             layout_,
-                             coarse_ ? &*coarse_ : nullptr,
-                             plan_.bake,
-                             sampler_ ? &*sampler_ : nullptr,
-                             image_sources_,
-                             view_};
-    Result<StageOutcome> written = write_export(made, files_, report_, context);
+    if (Status s = draw(); !s.ok()) return s;
+    ExportToWrite made{scene_,          options_,
+                       charts_,         layout_,
+                       finished_->mesh, std::move(finished_->uvs),
+                       plan_.bake,      sampler_ ? &*sampler_ : nullptr,
+                       image_sources_,  view_};
+    Result<StageOutcome> written = write_export(std::move(made), files_, report_, context);
     if (!written.ok()) return written.status();
     record_.finish(std::move(*written));
     return {};
@@ -379,6 +414,7 @@ class Export {
   std::vector<Vec2d> densities_, full_densities_;  // texels per unit, one per chart
   PageLayout layout_;
   std::optional<SimplifiedMesh> coarse_;
+  std::optional<FinishedMesh> finished_;
   std::vector<std::filesystem::path> image_sources_;  // where the pages' images lie until commit
   AtomicFiles files_;
   ExportReport report_;

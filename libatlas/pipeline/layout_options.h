@@ -5,7 +5,7 @@
 
 #include "libatlas/charts/charts.h"
 #include "libatlas/pipeline/export_options.h"
-#include "libatlas/pipeline/page_layout.h"
+#include "libatlas/unwrap/page_layout.h"
 
 namespace atlas {
 

@@ -26,7 +26,7 @@ Lightmap lightmap_of(const ExportReport& report, const ExportOptions& options) {
   Lightmap map;
   for (std::size_t p = 0; p < report.pages.size(); ++p) {
     const std::string name = page_name(options.target, p);
-    map.images.push_back(name + ".png");
+    map.images.push_back(name + page_extension(options.texture_format));
     if (options.exr) map.linear.push_back(name + ".exr");
   }
   if (options.tone.op == ToneOperator::linear) map.white = report.exposure_white;

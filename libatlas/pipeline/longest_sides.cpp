@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "libatlas/bake/placement.h"
+#include "libatlas/uvs/placement.h"
 
 namespace atlas {
 namespace {

@@ -6,8 +6,8 @@
 
 #include "libatlas/charts/charts.h"
 #include "libatlas/pipeline/export_options.h"
-#include "libatlas/pipeline/page_layout.h"
 #include "libatlas/texture/chart_textures.h"
+#include "libatlas/unwrap/page_layout.h"
 
 namespace atlas {
 

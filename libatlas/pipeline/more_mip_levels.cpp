@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <utility>
 
-#include "libatlas/bake/placement.h"
 #include "libatlas/core/progress.h"
 #include "libatlas/pipeline/export_options.h"
-#include "libatlas/pipeline/least_room.h"
+#include "libatlas/unwrap/least_room.h"
+#include "libatlas/uvs/placement.h"
 
 namespace atlas {
 namespace {

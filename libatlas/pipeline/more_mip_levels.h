@@ -3,7 +3,7 @@
 
 #include "libatlas/core/context.h"
 #include "libatlas/core/status.h"
-#include "libatlas/pipeline/layout_effort.h"
+#include "libatlas/unwrap/layout_effort.h"
 
 namespace atlas {
 

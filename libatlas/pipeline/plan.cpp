@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "libatlas/bake/placement.h"
 #include "libatlas/core/atomic_file.h"
 #include "libatlas/core/counted.h"
 #include "libatlas/core/degrees.h"
@@ -14,6 +13,7 @@
 #include "libatlas/pipeline/lightmap.h"
 #include "libatlas/scene/triangle_area.h"
 #include "libatlas/texture/luminance.h"
+#include "libatlas/uvs/placement.h"
 
 namespace atlas {
 namespace {
@@ -306,9 +306,16 @@ Status check_plan(const ExportPlan& plan, const ExportOptions& options) {
   }
   for (const ExtraFile& file : options.extra_files)
     if (Status s = check_writable(file.path); !s.ok()) return s;
+  if (!options.false_colour.empty()) {
+    if (!plan.bake)
+      return {ErrorCode::bad_option,
+              "ExportOptions::false_colour: there is no light to draw (leave it out)"};
+    if (Status s = check_writable(options.false_colour); !s.ok()) return s;
+  }
   if (!target.empty()) {
     if (Status s = check_writable(target); !s.ok() || !plan.bake) return s;
-    const std::string last_page = page_name(target, options.atlases - 1) + ".png";
+    const std::string last_page =
+        page_name(target, options.atlases - 1) + page_extension(options.texture_format);
     if (Status s = check_writable(target.parent_path() / last_page); !s.ok()) return s;
   }
   if (!plan.bake) return {};

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "libatlas/pipeline/layout_options.h"
-#include "libatlas/pipeline/least_room.h"
+#include "libatlas/unwrap/least_room.h"
 
 namespace atlas {
 

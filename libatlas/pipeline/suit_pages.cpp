@@ -9,7 +9,7 @@
 
 #include "libatlas/charts/tiles.h"
 #include "libatlas/pack/fit.h"
-#include "libatlas/pipeline/layout_problem.h"
+#include "libatlas/unwrap/layout_problem.h"
 
 namespace atlas {
 namespace {
@@ -34,7 +34,9 @@ struct BoxFit {
 
 BoxFit fit_boxes(std::span<const FitItem> items, const LayoutOptions& options,
                  const Context& context) {
-  const Result<FitResult> fitted = fit_pages(items, box_fit_options(options), context);
+  FitOptions fit = box_fit_options(options);
+  fit.preset = PackPreset::standard;  // it is an estimate, whatever effort the pages are worth
+  const Result<FitResult> fitted = fit_pages(items, fit, context);
   return fitted.ok() ? BoxFit{fitted->scale, fitted->utilization} : BoxFit{};
 }
 

@@ -6,7 +6,7 @@
 #include "libatlas/charts/charts.h"
 #include "libatlas/core/context.h"
 #include "libatlas/core/status.h"
-#include "libatlas/pipeline/page_layout.h"
+#include "libatlas/unwrap/page_layout.h"
 
 namespace atlas {
 

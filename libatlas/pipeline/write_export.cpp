@@ -22,11 +22,12 @@
 #include "libatlas/pipeline/lightmap.h"
 #include "libatlas/scene/uv_page.h"
 #include "libatlas/sheets/one_sided.h"
-#include "libatlas/uvs/draw_once.h"
-#include "libatlas/uvs/written_stretch.h"
 
 namespace atlas {
 namespace {
+
+// The share of the coarser mesh's slip by which packed positions may slip, too.
+constexpr double kSlipOfPacking = 0.25;
 
 // Returns what each triangle shows on average, as display values. Three samples are enough for the
 // choice of a viewpoint.
@@ -83,19 +84,11 @@ Viewpoint viewpoint_of(const ExportToWrite& made, const ToneMapping& tone, const
   return choose_viewpoint(made.scene.positions, made.scene.indices, eye, context);
 }
 
-World make_world(const ExportToWrite& made, const WorldMesh& mesh, ExportReport& report,
-                 const Context& context) {
+World make_world(ExportToWrite& made, ExportReport& report, const Context& context) {
   const ExportOptions& options = made.options;
   const PlacedCharts placed{made.charts, made.layout.placements, made.layout.pages};
-  AssembledWorld assembled = assemble_world(made.scene, placed, mesh, made.baked);
-  World world = std::move(assembled.world);
-  report.thin_triangles = assembled.thin_triangles;
+  World world = assemble_world(made.scene, placed, made.mesh, std::move(made.uvs));
   if (!made.baked) {
-    // After a move, the texels that a chart owns for its mip levels would reach a texel further.
-    const DrawnTwice drawn = options.plain_mip_levels == 0
-                                 ? draw_once(placed, mesh.uv_indices, world.uvs, context)
-                                 : drawn_twice(placed, mesh.uv_indices, world.uvs, context);
-    report.texels_drawn_twice = drawn.after;
     world.info.push_back(plain_pages_text(made.layout.pages, options.udim));
     if (options.udim) make_tiles(placed, world);
   } else {
@@ -104,22 +97,18 @@ World make_world(const ExportToWrite& made, const WorldMesh& mesh, ExportReport&
     for (std::size_t p = 0; p < pages.size() && !options.keep_scene; ++p)
       world.info.push_back(uv_page_text(p, pages[p].width, pages[p].height));
   }
-  MeshView shape;
-  shape.positions = made.scene.positions;
-  const WrittenStretch written =
-      measure_written(shape, placed, world.uvs, options.charts.max_stretch, context);
-  report.written_stretch_999 = written.stretch_999;
-  report.charts_beyond_bound = written.beyond;
   world.up = options.up;
   world.title = options.target.stem().string();
   world.metres_per_unit = made.scene.metres_per_unit;
+  if (options.compress)
+    world.compress_slip = kSlipOfPacking * options.simplify_slip * report.packed_texel;
   if (options.keep_scene) {
     keep_scene(made.scene, made.charts, world);
     world.uv_set = options.uv_set;
     if (!made.baked) return world;
     world.lightmap = lightmap_of(report, options);
     if (made.layout.pages.size() > 1) {
-      for (const std::uint32_t chart : mesh.triangle_chart)
+      for (const std::uint32_t chart : made.mesh.triangle_chart)
         world.lightmap->triangle_page.push_back(std::uint32_t(made.layout.placements[chart].page));
     }
     world.info.push_back(lightmap_text(*world.lightmap));
@@ -181,17 +170,12 @@ std::string writing_note(const ExportToWrite& made, const WorldFile& written) {
 
 }  // namespace
 
-Result<StageOutcome> write_export(const ExportToWrite& made, AtomicFiles& files,
-                                  ExportReport& report, const Context& context) {
-  const ChartedMesh fine(made.scene.indices, made.charts);
-  WorldMesh mesh = made.coarse ? WorldMesh{made.coarse->indices, made.coarse->uv_indices,
-                                           made.coarse->triangle_chart}
-                               : fine.view();
+Result<StageOutcome> write_export(ExportToWrite made, AtomicFiles& files, ExportReport& report,
+                                  const Context& context) {
   if (made.baked && !made.options.keep_scene)
-    mesh.one_sided = one_sided_triangles(made.scene, made.charts, mesh, context);
+    made.mesh.one_sided = one_sided_triangles(made.scene, made.charts, made.mesh, context);
   if (context.cancelled()) return Status::cancelled();
-  report.triangles_out = mesh.triangle_chart.size();
-  const World world = make_world(made, mesh, report, context);
+  const World world = make_world(made, report, context);
   Result<WorldFile> world_file = write_world(world, made.options.target, files, context);
   if (!world_file.ok()) return world_file.status();
   report.not_kept = world_file->not_kept;

@@ -12,6 +12,7 @@
 #include "libatlas/bake/fidelity.h"
 #include "libatlas/charts/charts.h"
 #include "libatlas/charts/gaps.h"
+#include "libatlas/core/image.h"
 #include "libatlas/core/status.h"
 #include "libatlas/pack/grouping.h"
 #include "libatlas/report/export_plan.h"
@@ -35,14 +36,23 @@ struct PageReport {
   std::int32_t width = 0, height = 0;
   std::uint32_t charts = 0;
   std::uint64_t image_bytes = 0;
+  // Of the image against the page before lossy compression, over all channels and texels, decibels;
+  // empty if the image is lossless.
+  std::optional<double> compression_psnr = {};
+};
+
+// Pictures for write_html(), which are made only if asked for (ExportOptions::report_pictures).
+struct PagePicture {
+  Image8 thumbnail = {};  // empty without an image
+  Image8 charts =
+      {};  // as large: at each pixel the number of the chart + 1 as 24 bits of RGB, or 0
+};
+struct ReportPictures {
+  std::vector<PagePicture> pages = {};
+  std::vector<Image8> worst = {};  // the surroundings of Fidelity::worst, which are in their middle
 };
 
 struct ExportReport {
-  // What a program was asked for; empty if the library was called. Options are those given, with
-  // their values, and the others that have a default.
-  std::vector<std::string> command = {};
-  std::vector<std::pair<std::string, std::string>> options = {};
-
   // Input
   std::filesystem::path scene = {}, target = {};
   std::uint64_t triangles = 0, vertices = 0, materials = 0, textures = 0, objects = 0;
@@ -58,6 +68,10 @@ struct ExportReport {
 
   // Charts
   std::vector<Chart> charts = {};
+  // One per chart once they are packed: the page, and texels per scene unit (the mean of both
+  // directions).
+  std::vector<std::int32_t> chart_pages = {};
+  std::vector<double> chart_densities = {};
   Distortion distortion = {};
   // The largest Distortion::stretch_999 of a chart with its uvs as floats, and the charts that
   // exceed ChartOptions::max_stretch only through that.
@@ -117,18 +131,22 @@ struct ExportReport {
   std::vector<std::pair<std::string, std::uint64_t>> files = {};
   // With keep_scene: what of the scene could not be written.
   std::vector<std::string> not_kept = {};
+  ReportPictures pictures = {};
   std::vector<std::string> advice = {};  // what the figures mean for the user, and the remedy
 };
 
-struct ReportOptions {
-  bool chart_rows = false;  // a row of figures for each chart, about 1 kB
+// What was asked for, and what the report is to hold of it.
+struct ReportRequest {
+  std::string command = {};  // the command line, or what stands for it
+  std::vector<std::pair<std::string, std::string>> options = {};  // with their values, as text
+  bool chart_rows = false;  // in JSON, a row of figures for each chart, about 1 kB
 };
 
 // Writes the report as JSON (docs/report.md explains every key). The file is written completely or
 // not at all. If the export was not carried out, the file has the plan and the stages so far, but
 // no results.
 Status write_json(const ExportReport& report, const std::filesystem::path& path,
-                  const ReportOptions& options = {});
+                  const ReportRequest& request = {});
 
 // Returns a line of text for users, such as the following. The seconds are CPU time.
 //   charts  301709 -> 68 charts, L2 1.0012, 99.9 % 1.112  0.82 s  120 MiB

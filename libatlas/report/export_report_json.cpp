@@ -6,6 +6,7 @@
 
 #include "libatlas/core/atomic_file.h"
 #include "libatlas/report/export_report.h"
+#include "libatlas/report/report_json.h"
 
 namespace atlas {
 namespace {
@@ -94,9 +95,10 @@ Json json_of(const ChartSet::Timing& t) {
           {"overlaps", t.overlaps_cpu}, {"absorb", t.absorb_cpu},   {"limbs", t.limbs_cpu}};
 }
 
-Json rows_of(const std::vector<Chart>& charts) {
+Json rows_of(const ExportReport& r) {
   Json rows = Json::array();
-  for (const Chart& c : charts) {
+  for (std::size_t i = 0; i < r.charts.size(); ++i) {
+    const Chart& c = r.charts[i];
     rows.push_back({{"triangles", c.triangle_count},
                     {"size", {c.size.x, c.size.y}},
                     {"area", c.distortion.surface_area},
@@ -104,6 +106,9 @@ Json rows_of(const std::vector<Chart>& charts) {
                     {"planar", c.planar_projection},
                     {"kept", c.kept},
                     {"distortion", json_of(c.distortion)}});
+    if (i >= r.chart_pages.size()) continue;
+    rows.back()["page"] = r.chart_pages[i];
+    rows.back()["texels_per_unit"] = r.chart_densities[i];
   }
   return rows;
 }
@@ -143,8 +148,8 @@ Json light_json(const ExportReport& r) {
   return {{"tone", tone_operator_name(r.tone.op)},
           {"white", r.exposure_white},
           {"median", r.luminance.median},
-          {"percentile99", r.luminance.percentile99},
-          {"percentile999", r.luminance.percentile999},
+          {"middle", r.luminance.middle},
+          {"percentile98", r.luminance.percentile98},
           {"maximum", r.luminance.maximum},
           {"mean", r.luminance.mean},
           {"log_average", r.luminance.log_average},
@@ -190,11 +195,13 @@ Json grouping_json(const GroupingResult& g) {
 Json pages_json(const ExportReport& r) {
   Json pages = Json::array();
   for (const PageReport& p : r.pages) {
+    const Json psnr = p.compression_psnr ? Json(*p.compression_psnr) : Json();
     pages.push_back({{"image", p.image},
                      {"width", p.width},
                      {"height", p.height},
                      {"charts", p.charts},
-                     {"bytes", p.image_bytes}});
+                     {"bytes", p.image_bytes},
+                     {"compression_psnr", psnr}});
   }
   Json packing{{"scale", r.scale},
                {"outlines", r.outlines},
@@ -221,6 +228,13 @@ Json error_json(const Fidelity& f, ToneOperator tone) {
   const auto decibels = [](double value, std::uint64_t samples) {
     return samples > 0 && value < kPerfectDecibels ? Json(value) : Json(nullptr);
   };
+  Json worst = Json::array();
+  for (const WorstPlace& place : f.worst)
+    worst.push_back({{"page", place.page},
+                     {"texel", {place.texel.x, place.texel.y}},
+                     {"wanted", {place.wanted.x, place.wanted.y, place.wanted.z}},
+                     {"shown", {place.shown.x, place.shown.y, place.shown.z}},
+                     {"error", place.error}});
   const auto of_lit = [&](double value) { return f.lit > 0 ? Json(value) : Json(nullptr); };
   return {{"samples_lit", f.lit},
           {"samples_unlit", f.unlit},
@@ -235,13 +249,14 @@ Json error_json(const Fidelity& f, ToneOperator tone) {
           {"rmse_display", of_lit(f.rmse_display)},
           {"p95", of_lit(f.p95)},
           {"p999", of_lit(f.p999)},
-          {"max", of_lit(f.maximum)}};
+          {"max", of_lit(f.maximum)},
+          {"worst", worst}};
 }
 
 // Values that were not measured have no key, because a 0 would read as a perfect result.
-void add_results(const ExportReport& r, const ReportOptions& options, Json& json) {
+void add_results(const ExportReport& r, const ReportRequest& request, Json& json) {
   json["charts"] = charts_json(r);
-  if (options.chart_rows) json["charts"]["charts"] = rows_of(r.charts);
+  if (request.chart_rows) json["charts"]["charts"] = rows_of(r);
   json["packing"] = pages_json(r);
   if (r.plan.runs("grouping")) json["grouping"] = grouping_json(r.grouping);
   if (r.full_texels > 0) {
@@ -262,18 +277,12 @@ void add_results(const ExportReport& r, const ReportOptions& options, Json& json
   json["advice"] = r.advice;
 }
 
-Json command_json(const ExportReport& r) {
-  Json options = Json::object();
-  for (const auto& [name, value] : r.options) options[name] = value;
-  return {{"words", r.command}, {"options", options}};
-}
-
 }  // namespace
 
-Status write_json(const ExportReport& r, const std::filesystem::path& path,
-                  const ReportOptions& options) {
+nlohmann::ordered_json json_of(const ExportReport& r, const ReportRequest& request) {
   Json json{{"version", LIBATLAS_VERSION}};
-  if (!r.command.empty()) json["command"] = command_json(r);
+  if (!request.command.empty()) json["command"] = request.command;
+  for (const auto& [name, value] : request.options) json["options"][name] = value;
   json.update({{"target", r.target.string()},
                {"wall_s", r.wall_seconds},
                {"cpu_s", r.cpu_seconds},
@@ -282,10 +291,16 @@ Status write_json(const ExportReport& r, const std::filesystem::path& path,
                {"plan", json_of(r.plan)},
                {"stages", stages_json(r)},
                {"skipped", skipped_json(r.plan)}});
-  if (r.carried_out) add_results(r, options, json);
+  if (r.carried_out) add_results(r, request, json);
+  return json;
+}
+
+Status write_json(const ExportReport& r, const std::filesystem::path& path,
+                  const ReportRequest& request) {
   // Names come from files and may hold bytes that are not UTF-8. Such bytes are replaced, because
   // otherwise they would end the export.
-  return write_file(path, json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n");
+  return write_file(path,
+                    json_of(r, request).dump(1, ' ', false, Json::error_handler_t::replace) + "\n");
 }
 
 std::string stage_line(const StageReport& s) {

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <utility>
 #include <vector>
 
 #include "libatlas/core/is_finite.h"
@@ -46,12 +47,32 @@ Vec3f point(const Scene& s, std::size_t t, const float b[3]) {
 // What logarithms are taken of at least, since the luma of denormal light may be 0.
 constexpr float kLeastLuma = 1e-37f;
 
+// Surfaces whose luminance is at least this share of the 90th percentile count as lit in a view:
+// lamps and sunlight rarely cover a tenth of it, and film holds a range of about a hundred, too.
+constexpr double kBrightQuantile = 0.9;
+constexpr float kLitShare = 0.01f;
+
+std::vector<float> picked(const std::vector<float>& values,
+                          const std::vector<std::uint32_t>& samples) {
+  std::vector<float> out;
+  out.reserve(samples.size());
+  for (const std::uint32_t i : samples) out.push_back(values[i]);
+  return out;
+}
+
+// Returns the median of the luma that counts as lit.
+double middle_of(std::vector<float> lumas) {
+  const float least = kLitShare * percentile(lumas, kBrightQuantile);
+  std::erase_if(lumas, [least](float y) { return y < least; });
+  return percentile(lumas, 0.5);
+}
+
 struct Collector {
   LuminanceStatistics out;
-  std::vector<SurfaceSample> samples;  // those of finite luminance
-  std::vector<float> peak, lumas;      // largest channel and luma of the lit samples
+  std::vector<Vec3f> points;        // of the samples of finite luminance
+  std::vector<float> peaks, lumas;  // their largest channel and luma
+  std::vector<std::uint32_t> lit;   // those whose largest channel is above 0
   double sum = 0, rgb[3] = {0, 0, 0}, log_sum = 0;
-  std::size_t unlit = 0;
 
   void add(const Vec3f& position, const Vec3f& c) {
     if (!is_finite(c)) {
@@ -61,35 +82,40 @@ struct Collector {
     out.negative += c.x < 0 || c.y < 0 || c.z < 0;
     const float v[3] = {std::max(c.x, 0.0f), std::max(c.y, 0.0f), std::max(c.z, 0.0f)};
     const float top = std::max({v[0], v[1], v[2]});
-    samples.push_back({position, top});
-    if (top <= 0) {
-      ++unlit;
-      return;
-    }
     const float y = luma(v[0], v[1], v[2]);
-    peak.push_back(top);
-    lumas.push_back(y);
+    if (top > 0) lit.push_back(static_cast<std::uint32_t>(points.size()));
+    points.push_back(position);
+    peaks.push_back(top);
+    lumas.push_back(std::max(y, kLeastLuma));
+    if (top <= 0) return;
     sum += y;
     for (int k = 0; k < 3; ++k) rgb[k] += v[k];
-    log_sum += std::log(std::max(y, kLeastLuma));
+    log_sum += std::log(lumas.back());
+  }
+
+  // Sets what depends on what is visible.
+  void view(double area_per_sample) {
+    std::vector<std::uint32_t> seen =
+        seen_samples(points, area_per_sample * static_cast<double>(points.size()));
+    std::erase_if(seen, [this](std::uint32_t i) { return peaks[i] <= 0; });
+    out.seen = seen.size() >= kSeenNeeded;
+    const std::vector<std::uint32_t>& samples = out.seen ? seen : lit;
+    std::vector<float> top = picked(peaks, samples), y = picked(lumas, samples);
+    out.percentile98 = percentile(top, 0.98);
+    out.median = percentile(y, 0.5);
+    out.middle = middle_of(std::move(y));
   }
 
   void finish(double area_per_sample) {
-    const std::size_t n = peak.size();
-    out.lit_area = area_per_sample * static_cast<double>(n);
-    out.unlit_area = area_per_sample * static_cast<double>(unlit);
-    if (n == 0) return;
-    out.maximum = *std::max_element(peak.begin(), peak.end());
-    std::vector<float> seen =
-        seen_values(samples, area_per_sample * static_cast<double>(samples.size()));
-    out.seen = seen.size() >= kSeenNeeded;
-    std::vector<float>& values = out.seen ? seen : peak;
-    out.percentile99 = percentile(values, 0.99);
-    out.percentile999 = percentile(values, 0.999);
-    out.median = percentile(values, 0.5);
-    out.minimum_log = std::log(double(std::max(percentile(lumas, 0.01), kLeastLuma)));
-    out.maximum_log = std::log(double(std::max(percentile(lumas, 0.99), kLeastLuma)));
-    const auto count = static_cast<double>(n);
+    const auto count = static_cast<double>(lit.size());
+    out.lit_area = area_per_sample * count;
+    out.unlit_area = area_per_sample * static_cast<double>(points.size() - lit.size());
+    if (lit.empty()) return;
+    out.maximum = *std::max_element(peaks.begin(), peaks.end());
+    view(area_per_sample);
+    std::vector<float> y = picked(lumas, lit);
+    out.minimum_log = std::log(double(percentile(y, 0.01)));
+    out.maximum_log = std::log(double(percentile(y, 0.99)));
     out.mean = sum / count;
     out.log_average = std::exp(log_sum / count);
     out.mean_rgb = {static_cast<float>(rgb[0] / count), static_cast<float>(rgb[1] / count),

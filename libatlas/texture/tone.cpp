@@ -85,14 +85,12 @@ void set_reinhard_devlin(ToneMapping& tone, const ToneOptions& o, const Luminanc
   tone.parameter[3] = 1 / at_white;
 }
 
-// Returns the white of a linear curve. Even light with a bright spot that covers less than a
-// hundredth would all be white with the 99th percentile, so the spot would vanish. White is then
-// one stop above, unless the spot is darker.
+// Returns the white of a linear curve: it lies so far above the log-average, here above its robust
+// estimate, that this is shown at a key (Reinhard et al. 2002, eq. 2). Of the keys of usual scenes,
+// the one at which a fiftieth of what is visible is white.
 double linear_white(const LuminanceStatistics& s) {
-  constexpr double kEven = 0.8, kBright = 1.5;
-  const double white = s.percentile99;
-  if (s.median < kEven * white || s.percentile999 < kBright * white) return white;
-  return std::min(2 * white, s.percentile999);
+  constexpr double kHighKey = 1 / 4.0, kLowKey = 1 / 15.0;
+  return std::clamp(s.percentile98, s.middle / kHighKey, s.middle / kLowKey);
 }
 
 }  // namespace

@@ -16,15 +16,18 @@ namespace atlas {
 struct LuminanceStatistics {
   double lit_area = 0;  // surface whose luminance is not exactly zero
   double unlit_area = 0;
-  // Of max(R, G, B) over what is visible and lit: rays from the empty space inside the scene's box
-  // (see docs/texture.md); if the scene encloses no space, over the lit surface by area.
-  double percentile99 = 0;
-  double percentile999 = 0, median = 0;  // likewise
-  bool seen = false;                     // the former: what is visible
-  double maximum = 0;                    // of max(R, G, B) over the samples
-  double log_average = 0;  // exp(mean ln Y) over the lit surface, Y = luma (Rec. 709 weights)
-  double mean = 0;         // of Y over the lit surface
-  Vec3f mean_rgb = {};     // over the lit surface
+  // Over what is visible and lit: rays from the empty space inside the scene's box (see
+  // docs/texture.md); if the scene encloses no space, over the lit surface by area.
+  double percentile98 = 0;  // of max(R, G, B)
+  double median = 0;        // of Y = luma (Rec. 709 weights)
+  // The median of Y without what is darker than a hundredth of its 90th percentile: a robust
+  // estimate of the log-average of what is lit, which darkness beside it does not change.
+  double middle = 0;
+  bool seen = false;                           // the former: what is visible
+  double maximum = 0;                          // of max(R, G, B) over the samples
+  double log_average = 0;                      // exp(mean ln Y) over the lit surface
+  double mean = 0;                             // of Y over the lit surface
+  Vec3f mean_rgb = {};                         // over the lit surface
   double minimum_log = 0, maximum_log = 0;     // ln Y at the 1st and 99th percentile
   std::uint64_t not_finite = 0, negative = 0;  // samples left out / counted as zero
 };
@@ -47,9 +50,9 @@ std::string_view tone_operator_name(ToneOperator op);
 
 struct ToneOptions {
   ToneOperator op = ToneOperator::linear;
-  // Scene luminance that becomes display white; 0: automatic. linear: the 99th percentile of what
-  // is visible, or up to twice that where most of it would be white while some is much brighter;
-  // the others: the largest luminance.
+  // Scene luminance that becomes display white; 0: automatic. linear: the 98th
+  // percentile of what is visible, but 4 to 15 times LuminanceStatistics::middle; the others: the
+  // largest luminance.
   double white = 0;                 // >= 0
   double exposure_stops = 0;        // brightens (+) or darkens (-) by powers of two, -64..64
   double key = 0.18;                // reinhard: middle grey, 1e-6..1e6

@@ -8,12 +8,16 @@
 #include "libatlas/core/bounds.h"
 #include "libatlas/core/counting_sort.h"
 #include "libatlas/core/glm_bridge.h"
+#include "libatlas/core/no_index.h"
+#include "libatlas/core/percentile.h"
 #include "libatlas/core/random.h"
 
 namespace atlas {
 namespace {
 
-constexpr int kPoints = 12288, kRays = 16, kNeeded = 10;
+constexpr int kPoints = 24576, kRays = 16, kNeeded = 10;
+// The share of the observers that stand where nobody looks around: under seats, between furniture.
+constexpr double kShortSighted = 0.5;
 // The size of a voxel in spacings of the samples. Samples lie about one spacing apart. A wall has
 // no holes for rays if voxels are larger than that.
 constexpr double kVoxelSpacings = 2.5;
@@ -37,9 +41,9 @@ void direction_in_cone(std::mt19937_64& random, const double axis[3], double cos
 
 class VoxelGrid {
  public:
-  VoxelGrid(std::span<const SurfaceSample> samples, double area) {
+  VoxelGrid(std::span<const Vec3f> samples, double area) {
     Bounds<glm::dvec3> box;
-    for (const SurfaceSample& s : samples) box.add(to_dvec(s.position));
+    for (const Vec3f& p : samples) box.add(to_dvec(p));
     low_ = box.low;
     voxel_ = kVoxelSpacings * std::sqrt(area / static_cast<double>(samples.size()));
     const auto cells = [&] {
@@ -54,10 +58,10 @@ class VoxelGrid {
 
   double size(int k) const { return size_[k]; }
 
-  // Follows a ray from `from` (in voxels) along `direction`. Returns the value of a sample in the
-  // first voxel with samples, chosen by `pick`, and sets `distance`. Returns null if there is none.
-  const float* cast(const double from[3], const double direction[3], std::uint64_t pick,
-                    double& distance) const {
+  // Follows a ray from `from` (in voxels) along `direction`. Returns a sample in the first
+  // voxel with samples, chosen by `pick`, and sets `distance`. Returns kNoIndex if there is none.
+  std::uint32_t cast(const double from[3], const double direction[3], std::uint64_t pick,
+                     double& distance) const {
     distance = 0;
     int cell[3], step[3];
     double next[3], delta[3];
@@ -70,12 +74,12 @@ class VoxelGrid {
     for (;;) {
       const std::size_t at = index(cell);
       const std::uint32_t n = first_[at + 1] - first_[at];
-      if (n > 0) return &values_[first_[at] + pick % n];
+      if (n > 0) return sorted_[first_[at] + pick % n];
       int k = next[0] < next[1] ? 0 : 1;
       if (next[2] < next[k]) k = 2;
       distance = next[k];
       cell[k] += step[k];
-      if (cell[k] < 0 || cell[k] >= size_[k]) return nullptr;
+      if (cell[k] < 0 || cell[k] >= size_[k]) return kNoIndex;
       next[k] += delta[k];
     }
   }
@@ -91,56 +95,75 @@ class VoxelGrid {
     return (std::size_t(cell[2]) * size_[1] + cell[1]) * size_[0] + cell[0];
   }
 
-  void sort(std::span<const SurfaceSample> samples) {
+  void sort(std::span<const Vec3f> samples) {
     std::vector<std::size_t> where(samples.size());
     for (std::size_t i = 0; i < samples.size(); ++i) {
-      const glm::dvec3 p = to_dvec(samples[i].position);
+      const glm::dvec3 p = to_dvec(samples[i]);
       int cell[3];
       for (int k = 0; k < 3; ++k)
         cell[k] = std::clamp(static_cast<int>((p[k] - low_[k]) / voxel_), 0, size_[k] - 1);
       where[i] = index(cell);
     }
-    values_.resize(samples.size());
+    sorted_.resize(samples.size());
     first_ = counting_sort(
         samples.size(), std::size_t(size_[0]) * size_[1] * size_[2],
         [&](std::size_t i) { return where[i]; },
-        [&](std::size_t i, std::uint32_t at) { values_[at] = samples[i].value; });
+        [&](std::size_t i, std::uint32_t at) { sorted_[at] = std::uint32_t(i); });
   }
 
   glm::dvec3 low_{};
   double voxel_ = 1;
   int size_[3];
-  std::vector<std::uint32_t> first_;  // index of each voxel's first sample; one more at the end
-  std::vector<float> values_;
+  std::vector<std::uint32_t> first_;   // index of each voxel's first sample; one more at the end
+  std::vector<std::uint32_t> sorted_;  // the samples, voxel by voxel
 };
+
+struct Observer {
+  double at[3] = {0, 0, 0}, gaze[3] = {0, 0, 1};  // in voxels
+  double reach = -1;                              // of the longest line of sight
+};
+
+// Sets where an observer looks. Returns false for one who stands outside.
+bool look_around(const VoxelGrid& grid, std::mt19937_64& random, Observer& observer) {
+  int met = 0;
+  for (int r = 0; r < kRays; ++r) {
+    constexpr double kUp[3] = {0, 0, 1};
+    double direction[3], distance;
+    direction_in_cone(random, kUp, -1, direction);
+    if (grid.cast(observer.at, direction, 0, distance) == kNoIndex) continue;
+    ++met;
+    if (distance <= observer.reach) continue;
+    observer.reach = distance;
+    std::copy_n(direction, 3, observer.gaze);
+  }
+  return met >= kNeeded;
+}
 
 }  // namespace
 
-std::vector<float> seen_values(std::span<const SurfaceSample> samples, double area) {
-  std::vector<float> seen;
-  if (samples.empty() || !(area > 0)) return seen;
-  const VoxelGrid grid(samples, area);
+std::vector<std::uint32_t> seen_samples(std::span<const Vec3f> positions, double area) {
+  std::vector<std::uint32_t> seen;
+  if (positions.empty() || !(area > 0)) return seen;
+  const VoxelGrid grid(positions, area);
   std::mt19937_64 random(1);
+  std::vector<Observer> observers;
+  std::vector<double> reach;
   for (int i = 0; i < kPoints; ++i) {
-    double from[3];
-    for (int k = 0; k < 3; ++k) from[k] = uniform(random) * grid.size(k);
-    if (!grid.empty(from)) continue;
-    double far = -1, gaze[3] = {0, 0, 1};
-    int met = 0;
-    for (int r = 0; r < kRays; ++r) {
-      constexpr double kUp[3] = {0, 0, 1};
-      double direction[3], distance;
-      direction_in_cone(random, kUp, -1, direction);
-      if (!grid.cast(from, direction, 0, distance)) continue;
-      ++met;
-      if (distance > far) far = distance, std::copy_n(direction, 3, gaze);
-    }
-    if (met < kNeeded) continue;
+    Observer observer;
+    for (int k = 0; k < 3; ++k) observer.at[k] = uniform(random) * grid.size(k);
+    if (!grid.empty(observer.at) || !look_around(grid, random, observer)) continue;
+    observers.push_back(observer);
+    reach.push_back(observer.reach);
+  }
+  if (observers.empty()) return seen;
+  const double least = percentile(reach, kShortSighted);
+  for (const Observer& observer : observers) {
+    if (observer.reach < least) continue;
     for (int r = 0; r < kRays; ++r) {
       double direction[3], distance;
-      direction_in_cone(random, gaze, kViewCosine, direction);
-      const float* hit = grid.cast(from, direction, random(), distance);
-      if (hit && *hit > 0) seen.push_back(*hit);
+      direction_in_cone(random, observer.gaze, kViewCosine, direction);
+      const std::uint32_t hit = grid.cast(observer.at, direction, random(), distance);
+      if (hit != kNoIndex) seen.push_back(hit);
     }
   }
   return seen;

@@ -1,7 +1,5 @@
 #include "libatlas/uvs/page_uvs.h"
 
-#include <algorithm>
-
 namespace atlas {
 
 std::vector<Vec2d> page_uvs(const PlacedCharts& placed) {
@@ -16,12 +14,6 @@ std::vector<Vec2d> page_uvs(const PlacedCharts& placed) {
     }
   }
   return uvs;
-}
-
-double texel_of_longest(std::span<const Extent> pages) {
-  std::int32_t longest = 1;
-  for (const Extent& page : pages) longest = std::max({longest, page.width, page.height});
-  return 1.0 / longest;
 }
 
 }  // namespace atlas

@@ -4,10 +4,10 @@
 #include <span>
 #include <vector>
 
-#include "libatlas/bake/placement.h"
 #include "libatlas/charts/charts.h"
 #include "libatlas/core/vec.h"
 #include "libatlas/pack/pack.h"
+#include "libatlas/uvs/placement.h"
 
 namespace atlas {
 
@@ -22,9 +22,5 @@ struct PlacedCharts {
 // Returns where each uv of the charts lies on its chart's page, as a fraction of the page's sides
 // (origin bottom left). The values are not rounded yet, see round_uvs.h.
 std::vector<Vec2d> page_uvs(const PlacedCharts& placed);
-
-// Returns a texel of the longest page, as a share of that page: how far rounding may move uvs of
-// baked pages (round_uvs.h).
-double texel_of_longest(std::span<const Extent> pages);
 
 }  // namespace atlas

@@ -81,8 +81,8 @@ TEST(BakePage, AverageReproducesARampInside) {
 // meets.
 TEST(BakePage, ShowsLightAndTexturesThroughAnyToneCurve) {
   LuminanceStatistics statistics;
-  statistics.log_average = 0.5;
-  statistics.maximum = statistics.percentile99 = 4;
+  statistics.log_average = statistics.middle = 0.5;
+  statistics.maximum = statistics.percentile98 = 4;
   statistics.mean_rgb = {0.6f, 0.6f, 0.6f};
   statistics.minimum_log = std::log(0.05);
   statistics.maximum_log = std::log(4);

@@ -34,7 +34,7 @@ Mesh lit_cabin(std::size_t triangles, int threads, std::uint32_t seed = 1) {
   options.seed = seed;
   options.direct_samples = 16;
   options.indirect_samples = 32;
-  const Lighting lighting(tracer, options);
+  const Lighting lighting(tracer, cabin_lights(), options);
   lighting.light_directly(mesh, 0, context);
   lighting.light_indirectly(mesh, context);
   refine(mesh, {triangles, 12}, lighting, context);
@@ -245,7 +245,7 @@ TEST(CabinLight, AgreesWithBruteForce) {
   const Tracer tracer(shell.positions, shell.triangles);
   LightingOptions options;
   options.direct_samples = 4096;
-  const Lighting lighting(tracer, options);
+  const Lighting lighting(tracer, cabin_lights(), options);
   std::mt19937 random(5);
   std::uniform_real_distribution<float> uniform(0, 1);
   for (const glm::vec3& place : {glm::vec3(3.1f, 0.05f, 1e-3f), glm::vec3(5.3f, -0.1f, 1e-3f),
@@ -253,7 +253,7 @@ TEST(CabinLight, AgreesWithBruteForce) {
     const Vertex vertex{place, place, {0, 0, 1}, 0};
     glm::dvec3 sum(0);
     constexpr int kSamples = 20000;
-    for (const AreaLight& light : cabin_lights()) {
+    for (const AreaLight& light : cabin_lights().areas) {
       // Samples each triangle of the light's fan in proportion to its area.
       for (std::size_t i = 1; i + 1 < light.corners.size(); ++i) {
         const glm::vec3 a = light.corners[0], u = light.corners[i] - a,
@@ -273,7 +273,7 @@ TEST(CabinLight, AgreesWithBruteForce) {
       }
     }
     const glm::vec3 direct = lighting.direct_at(vertex);
-    ASSERT_FALSE(tracer.blocked(place, cabin_sun().towards, 100) == false)
+    ASSERT_FALSE(tracer.blocked(place, cabin_lights().sun.towards, 100) == false)
         << "choose a place in the shade";
     for (int k = 0; k < 3; ++k) EXPECT_NEAR(direct[k], sum[k], 0.04 * sum[k] + 0.5) << place.x;
   }

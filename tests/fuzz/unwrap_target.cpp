@@ -1,7 +1,7 @@
 #include <cmath>
 #include <vector>
 
-#include "libatlas/pipeline/unwrap.h"
+#include "libatlas/unwrap/unwrap.h"
 #include "tests/fuzz/targets.h"
 #include "tests/support/atlas_measure.h"
 
@@ -90,7 +90,7 @@ UnwrapOptions options_of(unsigned choice, unsigned more, const Mesh& mesh) {
   options.page_size = 256;
   // Pressing a hundred charts takes seconds.
   const bool press = more & 8 && mesh.indices.size() < 3 * 32;
-  options.packing = press ? PackPreset::standard : PackPreset::fast;
+  options.preset = press ? PackPreset::standard : PackPreset::fast;
   options.charts.preset = ChartPreset(choice % 3);
   options.charts.keep_uv_charts = more & 1;
   options.charts.split_at_materials = !(more & 16);

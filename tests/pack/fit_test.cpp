@@ -110,6 +110,7 @@ TEST(FitPages, FewBoxesFillTheirPages) {
       std::vector<FitItem> items(4 * std::size_t(boxes));
       for (FitItem& item : items) item = {double(noise.in(300, 900)), double(noise.in(300, 900))};
       FitOptions o;
+      o.alignment = 4;
       o.pages = 4;
       o.page_size = 2048;
       o.padding = 1;
@@ -125,6 +126,7 @@ TEST(FitPages, FewBoxesFillTheirPages) {
 TEST(FitPages, SmallContentTakesFewSmallPages) {
   const std::vector<FitItem> items(4, FitItem{20, 20});
   FitOptions o;
+  o.alignment = 4;
   o.pages = 8;
   const FitResult r = valid_fit(items, o);
   EXPECT_EQ(r.scale, 1);
@@ -138,6 +140,7 @@ TEST(FitPages, PagesWithoutItemsAreLeftOut) {
       10, {{0, 0}, {40, 0}, {40, 40}, {0, 0}, {40, 40}, {0, 40}});
   const test::ChartItems charts(squares);
   FitOptions o;
+  o.alignment = 4;
   o.pages = 6;
   o.page_size = 64;
   o.minimum_side = 0;
@@ -156,6 +159,7 @@ TEST(FitPages, PagesWithoutItemsAreLeftOut) {
 
 TEST(FitPages, MorePagesThanItemsTakeNoMemory) {
   FitOptions o;
+  o.alignment = 4;
   o.pages = UINT32_MAX;
   o.max_scale = 100;
   const FitResult r = fit({{50, 50}, {20, 30}}, o);
@@ -164,6 +168,7 @@ TEST(FitPages, MorePagesThanItemsTakeNoMemory) {
 
 TEST(FitPages, TheLargestScaleMayBeFarFromWhatFits) {
   FitOptions o;
+  o.alignment = 4;
   o.page_size = 256;
   o.max_scale = 1e300;
   const FitResult r = fit({{50, 50}, {20, 30}}, o);
@@ -260,6 +265,7 @@ TEST(FitPages, FreePagesAreCropped) {
 // The largest side of pages of any shape need not be a power of two.
 TEST(FitPages, FreePagesHaveAnyLargestSide) {
   FitOptions o;
+  o.alignment = 4;
   o.page_size = 1000;
   o.free_aspect = true;
   const Result<FitResult> fitted = fit_pages(std::vector<FitItem>{{900, 30}, {700, 40}}, o, {});
@@ -271,6 +277,7 @@ TEST(FitPages, FreePagesHaveAnyLargestSide) {
 
 TEST(FitPages, Failures) {
   FitOptions o;
+  o.alignment = 4;
   o.page_size = 64;
   const std::vector<FitItem> many(100, FitItem{50, 50});
   EXPECT_EQ(fit_pages(many, o, {}).status().code(), ErrorCode::no_solution);

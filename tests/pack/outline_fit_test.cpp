@@ -104,6 +104,7 @@ TEST(OutlineFit, WrongShapesAreToldWhereBoxesWouldDo) {
   const std::vector<std::uint32_t> beyond{0, 1, 600'000'000};
   const std::vector<FitItem> items{{60, 60}};
   FitOptions o;
+  o.alignment = 4;
   o.page_size = 64;
   const std::vector<ChartShape> right{{box, {}}}, wrong{{box, beyond}};
   o.shapes = right;

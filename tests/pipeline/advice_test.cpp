@@ -244,7 +244,7 @@ TEST(Advice, ALampOfAnMtlIsToldAndReported) {
 TEST(Advice, LightThatTheToneCurveLosesIsNamed) {
   ExportReport report = report_of(100, 8, 1024);
   report.luminance.log_average = 100;
-  report.luminance.percentile99 = 700;
+  report.luminance.percentile98 = 700;
   const auto with_white = [&](float white) {
     report.tone.scale = 1 / white;
     report.exposure_white = white;
@@ -265,7 +265,7 @@ TEST(Advice, LightThatTheToneCurveLosesIsNamed) {
 // whatever the tone curve.
 TEST(Advice, AGivenExposureCountsLikeAGivenWhite) {
   ExportReport report = report_of(100, 8, 1024);
-  report.luminance.log_average = report.luminance.percentile99 = 100;
+  report.luminance.log_average = report.luminance.percentile98 = 100;
   report.tone.scale = 1.0F / 90;
   report.exposure_white = 90;
   ExportOptions options;
@@ -281,7 +281,7 @@ TEST(Advice, ColoursBeyondOneAreNamed) {
   ExportReport report = report_of(100, 8, 1024);
   report.tone.scale = 1;
   report.exposure_white = 1;
-  report.luminance.log_average = report.luminance.percentile99 = 140;
+  report.luminance.log_average = report.luminance.percentile98 = 140;
   ExportOptions options;
   options.quantity = Quantity::colour;
   EXPECT_TRUE(holds(advice_on(report, options), "colours of 140, the geometric mean"));
@@ -293,7 +293,7 @@ TEST(Advice, ColoursBeyondOneAreNamed) {
       holds(advice_on(report, options), "light of 140, the geometric mean, is shown white"));
   options.tone.white = 0;
   report.tone.scale = 1;
-  report.luminance.log_average = report.luminance.percentile99 = 0.7;
+  report.luminance.log_average = report.luminance.percentile98 = 0.7;
   EXPECT_TRUE(advice_on(report, options).empty());
 }
 
@@ -301,7 +301,7 @@ TEST(Advice, ColoursBeyondOneAreNamed) {
 TEST(Advice, RoomsThatTheMeasuredWhiteLeavesBlackAreNamed) {
   ExportReport report = report_of(100, 8, 1024);
   report.luminance.log_average = 900;
-  report.luminance.percentile99 = report.exposure_white = 48000;
+  report.luminance.percentile98 = report.exposure_white = 48000;
   report.tone.scale = 1 / 48000.0F;
   report.luminance.median = 100;
   EXPECT_TRUE(advice_on(report, {}).empty());

@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "tests/pipeline/shape_view.h"
+#include "tests/support/shape_view.h"
 
 namespace atlas::test {
 namespace {
@@ -29,7 +29,11 @@ Plates plates(int count, double texels) {
   return {std::move(*charts), std::vector<Vec2d>(std::size_t(count), {texels, texels})};
 }
 
-const LayoutOptions kPages{.pages = 4, .page_size = 256, .outlines = true};  // for levels 0 to 2
+const LayoutOptions kPages = [] {  // for levels 0 to 2
+  LayoutOptions options{{.pages = 4, .page_size = 256, .alignment = 4}};
+  options.outlines = true;
+  return options;
+}();
 
 std::int64_t texels_of(const PageLayout& layout) {
   std::int64_t texels = 0;

@@ -1,5 +1,5 @@
 // Pages of plain uvs: how large and how full they are.
-#include "libatlas/pipeline/page_layout.h"
+#include "libatlas/unwrap/page_layout.h"
 
 #include <gtest/gtest.h>
 
@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "libatlas/pipeline/export_world.h"
-#include "libatlas/pipeline/layout_effort.h"
-#include "libatlas/pipeline/least_room.h"
+#include "libatlas/unwrap/layout_effort.h"
+#include "libatlas/unwrap/least_room.h"
 #include "tests/pipeline/lit_scene.h"
 #include "tests/support/shapes.h"
 #include "tests/support/temp_folder.h"
@@ -50,7 +50,7 @@ TEST(Layout, TheLeastRoomIsNeverMoreThanPackingNeeds) {
   for (const Vec2d size : {Vec2d{1, 1}, Vec2d{40, 1}, Vec2d{40, 30}, Vec2d{500, 500}}) {
     const ChartSet charts = boxes_of(std::vector<Vec2d>(200, size));
     const std::vector<Vec2d> densities(200, {1, 1});
-    LayoutOptions options{.pages = 1, .page_size = 32, .padding = 2, .alignment = 4};
+    LayoutOptions options{{.pages = 1, .page_size = 32, .padding = 2, .alignment = 4}};
     while (!lay_out_pages(charts, densities, options, {}).ok()) options.page_size *= 2;
     const std::vector<double> same(200, 1.0);
     EXPECT_TRUE(check_least_room(charts, same, options).ok()) << size.x << " x " << size.y;
@@ -71,11 +71,9 @@ TEST(Layout, GuttersBoundWhatChartsCover) {
     for (const std::size_t count : {1, 7, 40})
       for (const bool free_aspect : {false, true}) {
         const ChartSet charts = boxes_of(std::vector<Vec2d>(count, size));
-        const LayoutOptions options{.pages = 1,
-                                    .page_size = 256,
-                                    .alignment = 1,
-                                    .minimum_side = 0,
-                                    .free_aspect = free_aspect};
+        LayoutOptions options{{.page_size = 256}};
+        options.minimum_side = 0;
+        options.free_aspect = free_aspect;
         const std::vector<Vec2d> densities(count, {1, 1});
         const Result<PageLayout> layout = lay_out_pages(charts, densities, options, {});
         ASSERT_TRUE(layout.ok()) << layout.status().message();
@@ -101,7 +99,7 @@ TEST(Layout, TheFillingDensityCoversAllTexels) {
 TEST(Layout, ScalingMakesNoSideShorterThanAllowed) {
   const ChartSet charts = boxes_of({{400, 4}, {300, 20}, {200, 100}});
   const std::vector<Vec2d> densities(3, {1, 1});
-  LayoutOptions options{.pages = 1, .page_size = 128, .padding = 1, .alignment = 1};
+  LayoutOptions options{{.pages = 1, .page_size = 128, .padding = 1, .alignment = 1}};
   options.allow_rotation = true;
   const Result<PageLayout> layout = lay_out_pages(charts, densities, options, {});
   ASSERT_TRUE(layout.ok()) << layout.status().message();
@@ -121,7 +119,7 @@ TEST(Layout, ScalingMakesNoSideShorterThanAllowed) {
 TEST(Layout, BoxesHoldTheirChartsWhicheverWayTheyLie) {
   const ChartSet charts = boxes_of({{120, 30}, {90, 30}, {90, 30}, {90, 30}, {90, 30}});
   const std::vector<Vec2d> densities(5, {1, 1});
-  const LayoutOptions options{.pages = 1, .page_size = 128, .padding = 0, .alignment = 1};
+  const LayoutOptions options{{.pages = 1, .page_size = 128, .padding = 0, .alignment = 1}};
   const Result<PageLayout> layout = lay_out_pages(charts, densities, options, {});
   ASSERT_TRUE(layout.ok()) << layout.status().message();
   int turned = 0;
@@ -155,7 +153,7 @@ TEST(Layout, OfTwoWaysAtFullSizeTheSmallerPagesWin) {
   const Result<ChartSet> charts = make_charts(mesh, {}, {});
   ASSERT_TRUE(charts.ok());
   ASSERT_EQ(charts->charts.size(), 2u);
-  LayoutOptions options{.pages = 1, .page_size = 512, .padding = 1, .alignment = 1};
+  LayoutOptions options{{.pages = 1, .page_size = 512, .padding = 1, .alignment = 1}};
   const std::vector<Vec2d> densities(2, {110, 110});
   const auto texels = [&](bool outlines) {
     options.outlines = outlines;
@@ -194,7 +192,8 @@ Result<ChartSet> charts_of_rings_and_strips() {
 TEST(Layout, APoorPageOfPlainUvsIsPackedWithMoreWork) {
   const Result<ChartSet> charts = charts_of_rings_and_strips();
   ASSERT_TRUE(charts.ok());
-  LayoutOptions options{.pages = 1, .padding = 1, .alignment = 1, .minimum_side = 0};
+  LayoutOptions options{{.padding = 1}};
+  options.minimum_side = 0;
   options.outlines = options.free_aspect = true;
   const auto use = [&](PackPreset preset) {
     options.preset = preset;
@@ -213,7 +212,7 @@ TEST(Layout, APoorPageOfPlainUvsIsPackedWithMoreWork) {
 TEST(Layout, MoreWorkIsSpentWhereItMayWinEnough) {
   const Result<ChartSet> charts = charts_of_rings_and_strips();
   ASSERT_TRUE(charts.ok());
-  LayoutEffort options{{.pages = 1, .page_size = 256, .padding = 1, .alignment = 1}};
+  LayoutEffort options{{{.pages = 1, .page_size = 256, .padding = 1, .alignment = 1}}};
   options.minimum_side = 0;
   options.outlines = options.free_aspect = true;
   const std::vector<Vec2d> densities(charts->charts.size(), Vec2d{600, 600});

@@ -6,10 +6,11 @@
 
 #include "libatlas/bake/bake.h"
 #include "libatlas/core/srgb.h"
-#include "libatlas/pipeline/page_layout.h"
-#include "libatlas/pipeline/part_gaps.h"
+#include "libatlas/pipeline/texture_gaps.h"
 #include "libatlas/scene/check_scene.h"
 #include "libatlas/texture/chart_textures.h"
+#include "libatlas/unwrap/page_layout.h"
+#include "libatlas/unwrap/part_gaps.h"
 #include "tests/support/shapes.h"
 
 namespace atlas::test {
@@ -54,7 +55,7 @@ struct Stair {
     charts.charts[0].kept = false;
   }
 
-  PagesOfCharts pages() const { return {view, 1.25, double(kPage) * kPage, kPage}; }
+  PagesOfCharts pages() const { return {view, 1.25, double(kPage) * kPage}; }
 };
 
 double look_up(const Image8& page, Vec2d at) {
@@ -68,6 +69,7 @@ double look_up(const Image8& page, Vec2d at) {
 // Returns the largest error of a look-up at the ends, in 8-bit codes.
 double error_at_ends(const Stair& stair) {
   LayoutOptions options;
+  options.alignment = 4;
   options.pages = 1;
   options.page_size = kPage;
   const std::vector<Vec2d> density{{kDensity, kDensity}};
@@ -115,13 +117,11 @@ TEST(PartGaps, OneColourStaysAndNoChartOutgrowsItsPage) {
   std::vector<ChartTexture> textures(1);
   textures[0].texels_per_unit = {kDensity, kDensity};
   textures[0].content = ChartContent::uniform;
-  EXPECT_EQ(open_part_gaps(stair.pages(), textures, stair.charts, {}).charts, 0u);
+  EXPECT_EQ(open_texture_gaps(stair.pages(), {textures, kPage}, stair.charts, {}).charts, 0u);
   textures[0].content = ChartContent::varied;
-  PagesOfCharts pages = stair.pages();
-  pages.max_side = int(stair.charts.charts[0].size.x * kDensity) - 1;
-  EXPECT_EQ(open_part_gaps(pages, textures, stair.charts, {}).charts, 1u);
-  EXPECT_LE(stair.charts.charts[0].size.x * textures[0].texels_per_unit.x,
-            pages.max_side * (1 + 1e-12));
+  const int max_side = int(stair.charts.charts[0].size.x * kDensity) - 1;
+  EXPECT_EQ(open_texture_gaps(stair.pages(), {textures, max_side}, stair.charts, {}).charts, 1u);
+  EXPECT_LE(stair.charts.charts[0].size.x * textures[0].texels_per_unit.x, max_side * (1 + 1e-12));
   EXPECT_GT(textures[0].texels_per_unit.x, 0.9 * kDensity);
   EXPECT_EQ(textures[0].texels_per_unit.x, textures[0].texels_per_unit.y);
 }
@@ -172,7 +172,7 @@ TEST(PartGaps, OnPoorPagesTheyAreOpenedOnceMore) {
   ASSERT_TRUE(made.ok()) << made.status().message();
   ASSERT_EQ(made->charts.size(), 2u);
   for (Chart& chart : made->charts) chart.kept = false;
-  LayoutOptions layout{.pages = 1, .page_size = 256, .padding = 1, .alignment = 1};
+  LayoutOptions layout{{.pages = 1, .page_size = 256, .padding = 1, .alignment = 1}};
   layout.minimum_side = 0;
   layout.outlines = layout.square = true;
   const double texels = 256.0 * 256;
@@ -196,12 +196,10 @@ TEST(PartGaps, OnlyOpenedChartsThatOutgrowTheirPageGetFewerTexels) {
   Stair stair;
   const Vec2d steep{kDensity, 4 * kDensity};  // longer along v than along u
   std::vector<ChartTexture> textures(1);
-  PagesOfCharts pages = stair.pages();
   const auto opened = [&](ChartContent content, std::int32_t max_side) {
     textures[0].texels_per_unit = steep;
     textures[0].content = content;
-    pages.max_side = max_side;
-    open_part_gaps(pages, textures, stair.charts, {});
+    open_texture_gaps(stair.pages(), {textures, max_side}, stair.charts, {});
     return textures[0].texels_per_unit;
   };
   EXPECT_EQ(opened(ChartContent::varied, 10000), steep);

@@ -6,7 +6,7 @@
 #include <cstddef>
 #include <utility>
 
-#include "tests/pipeline/shape_view.h"
+#include "tests/support/shape_view.h"
 
 namespace atlas::test {
 namespace {
@@ -29,7 +29,7 @@ SizedCharts sized_plates(const Shape& shape) {
   return sized;
 }
 
-const LayoutOptions kOnePage{.pages = 1, .page_size = 512};
+const LayoutOptions kOnePage{{.page_size = 512, .alignment = 4}};
 
 double scale_of(const SizedCharts& sized) {
   const auto layout = lay_out_pages(sized.charts, sized.densities, kOnePage, {});

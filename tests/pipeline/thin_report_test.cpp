@@ -10,8 +10,8 @@
 
 #include "libatlas/pipeline/assemble_world.h"
 #include "libatlas/pipeline/export_world.h"
-#include "libatlas/pipeline/unwrap.h"
 #include "libatlas/scene/check_scene.h"
+#include "libatlas/unwrap/unwrap.h"
 #include "tests/pipeline/unwrap_checks.h"
 #include "tests/support/atlas_measure.h"
 #include "tests/support/flat_mesh.h"
@@ -135,7 +135,7 @@ TEST(ThinReport, UnwrappingTellsOfThinTriangles) {
   std::vector<std::string> said;
   Context context;
   context.warn = [&](std::string_view line) { said.emplace_back(line); };
-  const auto mesh = unwrap_mesh(view_of(loaded.scene), {.page_size = 1024}, context);
+  const auto mesh = unwrap_mesh(view_of(loaded.scene), {{.page_size = 1024}}, context);
   ASSERT_TRUE(mesh.ok()) << mesh.status().message();
   std::size_t closed = 0;
   for (std::size_t t = 0; t < mesh->triangle_page.size(); ++t) closed += !(turn(*mesh, t) > 0);

@@ -8,8 +8,8 @@
 #include <set>
 #include <vector>
 
-#include "libatlas/pipeline/unwrap.h"
 #include "libatlas/scene/scene.h"
+#include "libatlas/unwrap/unwrap.h"
 
 namespace atlas::test {
 

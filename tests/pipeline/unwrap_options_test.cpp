@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "libatlas/bake/bake.h"
-#include "libatlas/pipeline/unwrap.h"
+#include "libatlas/unwrap/unwrap.h"
 #include "tests/pipeline/lit_scene.h"
 #include "tests/pipeline/unwrap_checks.h"
 #include "tests/support/atlas_measure.h"
@@ -28,7 +28,7 @@ TEST(Unwrap, PagesAreBakedWithMipLevels) {
   const LuminanceSampler sampler(scene.scene, Quantity::illuminance);
   const ToneMapping tone{};
   for (const int levels : {-1, 0, 2, 3}) {
-    UnwrapOptions options{.page_size = 256, .padding = 2, .packing = PackPreset::fast};
+    UnwrapOptions options{{.page_size = 256, .padding = 2, .preset = PackPreset::fast}};
     options.mip_levels = std::max(levels, 0);
     const auto mesh = unwrap_mesh(view_of(scene.scene), options, {});
     ASSERT_TRUE(mesh.ok()) << mesh.status().message();
@@ -66,7 +66,7 @@ void expect_cells(const UnwrappedMesh& mesh, std::int32_t cell, std::int32_t pad
 
 TEST(Unwrap, AlignmentIsKept) {
   const LoadedScene scene = lit_room(6);
-  UnwrapOptions options{.page_size = 512};
+  UnwrapOptions options{{.page_size = 512}};
   options.alignment = 8;
   const auto mesh = unwrap_mesh(view_of(scene.scene), options, {});
   ASSERT_TRUE(mesh.ok()) << mesh.status().message();
@@ -77,7 +77,7 @@ TEST(Unwrap, AlignmentIsKept) {
 // With mip levels, cells are as large as both multiples allow.
 TEST(Unwrap, AlignmentAndMipLevelsAreKeptTogether) {
   const LoadedScene scene = lit_room(6);
-  UnwrapOptions options{.page_size = 512};
+  UnwrapOptions options{{.page_size = 512}};
   options.alignment = 3;
   options.mip_levels = 2;
   const auto mesh = unwrap_mesh(view_of(scene.scene), options, {});
@@ -96,7 +96,7 @@ TEST(Unwrap, PaddingIsTheWiderOfThatAskedForAndThatOfMipLevels) {
   };
   for (const Case& c : {Case{0, 0, 0}, Case{5, 0, 5}, Case{0, 1, 1}, Case{8, 1, 8}, Case{1, 4, 8},
                         Case{16, 4, 16}}) {
-    UnwrapOptions options{.page_size = 64, .padding = c.padding, .square = true};
+    UnwrapOptions options{{.page_size = 64, .padding = c.padding, .square = true}};
     options.mip_levels = c.mip_levels;
     const auto mesh = unwrap_mesh(view, options, {});
     ASSERT_TRUE(mesh.ok()) << mesh.status().message();
@@ -113,9 +113,9 @@ TEST(Unwrap, ChartsAreNotTurnedWhereThatIsForbidden) {
     view.indices = shape.indices;
     for (const std::uint32_t pages : {1u, 3u}) {
       for (const PackPreset packing : {PackPreset::fast, PackPreset::standard}) {
-        UnwrapOptions options{.pages = pages, .page_size = 256};
+        UnwrapOptions options{{.pages = pages, .page_size = 256}};
         options.allow_rotation = false;
-        options.packing = packing;
+        options.preset = packing;
         const auto mesh = unwrap_mesh(view, options, {});
         ASSERT_TRUE(mesh.ok()) << mesh.status().message();
         expect_sound(view, *mesh);
@@ -158,7 +158,7 @@ struct Kite {
 };
 
 TEST(Unwrap, PlacementsSayWhereUvsLie) {
-  UnwrapOptions options{.page_size = 1024, .packing = PackPreset::fast};
+  UnwrapOptions options{{.page_size = 1024, .preset = PackPreset::fast}};
   options.charts.min_fill = 0;
   for (int seed = 0; seed < 40; ++seed) {
     const Kite kite(seed);
@@ -198,7 +198,7 @@ TEST(Unwrap, WithMipLevelsChartsMoveOnlyIfTheirPaddingIsWider) {
   };
   for (const Case& c : {Case{2, 0, true}, Case{1, 1, false}, Case{2, 1, true}, Case{2, 2, false},
                         Case{3, 2, true}}) {
-    UnwrapOptions options{.page_size = 1024, .padding = c.padding, .packing = PackPreset::fast};
+    UnwrapOptions options{{.page_size = 1024, .padding = c.padding, .preset = PackPreset::fast}};
     options.mip_levels = c.mip_levels;
     options.charts.min_fill = 0;
     std::uint64_t told = 0, found = 0;
@@ -227,7 +227,7 @@ TEST(Unwrap, OnPagesToBakeUvsStayWithinATexelOfTheirPlacements) {
   view.positions = positions;
   view.indices = slivers.corners;
   const auto farthest = [&](std::int32_t mip_levels) {
-    UnwrapOptions options{.page_size = 16384, .packing = PackPreset::fast, .square = true};
+    UnwrapOptions options{{.page_size = 16384, .square = true, .preset = PackPreset::fast}};
     options.mip_levels = mip_levels;
     options.charts.min_fill = 0;
     const auto mesh = unwrap_mesh(view, options, {});
@@ -256,7 +256,7 @@ TEST(Unwrap, CancelledAfterPackingGivesNoMesh) {
   context.progress = [&](std::string_view stage, double fraction) {
     if (stage == "packing" && fraction == 1) cancel = true;
   };
-  const auto mesh = unwrap_mesh(view_of(ring.scene), {.page_size = 64}, context);
+  const auto mesh = unwrap_mesh(view_of(ring.scene), {{.page_size = 64}}, context);
   EXPECT_EQ(mesh.status().code(), ErrorCode::cancelled);
 }
 
@@ -266,7 +266,7 @@ TEST(Unwrap, MoreWorkFillsThePageNoWorse) {
   int k = 0;
   for (const PackPreset packing : {PackPreset::fast, PackPreset::standard, PackPreset::best}) {
     UnwrapOptions options;
-    options.packing = packing;
+    options.preset = packing;
     options.charts.cone_degrees = 40;
     const auto mesh = unwrap_mesh(view_of(ring.scene), options, {});
     ASSERT_TRUE(mesh.ok());

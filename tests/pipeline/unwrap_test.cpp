@@ -1,5 +1,5 @@
 // unwrap_mesh loses nothing, vertices keep what they are copies of, and uvs flip no triangle.
-#include "libatlas/pipeline/unwrap.h"
+#include "libatlas/unwrap/unwrap.h"
 
 #include <gtest/gtest.h>
 
@@ -13,8 +13,8 @@
 
 #include "libatlas/core/clock.h"
 #include "libatlas/pipeline/export_world.h"
-#include "libatlas/pipeline/part_gaps.h"
 #include "libatlas/scene/check_scene.h"
+#include "libatlas/unwrap/part_gaps.h"
 #include "tests/pipeline/lit_scene.h"
 #include "tests/pipeline/unwrap_checks.h"
 #include "tests/support/shapes.h"
@@ -73,8 +73,10 @@ TEST(Unwrap, AHubOfThousandsIsQuick) {
   MeshView view;
   view.positions = positions;
   view.indices = indices;
+  UnwrapOptions options;
+  options.charts.preset = ChartPreset::fast;
   const double begun = cpu_seconds();
-  const auto mesh = unwrap_mesh(view, {.charts = {.preset = ChartPreset::fast}}, {});
+  const auto mesh = unwrap_mesh(view, options, {});
   ASSERT_TRUE(mesh.ok()) << mesh.status().message();
   EXPECT_EQ(mesh->vertices, indices);
   EXPECT_LT(cpu_seconds() - begun, 3 * kSlowness);
@@ -109,7 +111,7 @@ TEST(Unwrap, PagesSquareAndSeveralWithADensity) {
 
 TEST(Unwrap, MoreTexelsThanPagesHoldAreAsManyAsTheyHold) {
   const LoadedScene ring = lit_scene(torus(24, 12));
-  UnwrapOptions options{.page_size = 128};
+  UnwrapOptions options{{.page_size = 128}};
   const auto full = unwrap_mesh(view_of(ring.scene), options, {});
   options.texels_per_unit = 1e300;  // sides of charts in texels would exceed the range of double
   const auto asked = unwrap_mesh(view_of(ring.scene), options, {});
@@ -125,7 +127,7 @@ TEST(Unwrap, UvsAtThePagesEdgesAreOnIt) {
     MeshView view;
     view.positions = shape.positions;
     view.indices = shape.indices;
-    const auto mesh = unwrap_mesh(view, {.page_size = 64, .padding = 0, .square = true}, {});
+    const auto mesh = unwrap_mesh(view, {{.page_size = 64, .padding = 0, .square = true}}, {});
     ASSERT_TRUE(mesh.ok()) << mesh.status().message();
     expect_sound(view, *mesh);
   }
@@ -172,7 +174,7 @@ TEST(Unwrap, PartsOfAChartAreKeptApartWhereAsked) {
   const auto near = [&](const UnwrappedMesh& mesh) {
     return left_part_gaps(view, mesh.charts, mesh.placements, {}).near_after;
   };
-  UnwrapOptions options{.page_size = 128};
+  UnwrapOptions options{{.page_size = 128}};
   options.charts.min_fill = 0;  // otherwise a ring would be cut to save page area
   const auto close = unwrap_mesh(view, options, {});
   options.part_gaps = true;
@@ -290,9 +292,9 @@ TEST(Unwrap, ProgressEndsAtOne) {
     last = stage;
     fraction = f;
   };
-  const UnwrapOptions free{.page_size = 256, .packing = PackPreset::fast},
-      square{.page_size = 256, .square = true},
-      several{.pages = 4, .page_size = 256, .packing = PackPreset::fast};
+  const UnwrapOptions free{{.page_size = 256, .preset = PackPreset::fast}},
+      square{{.page_size = 256, .square = true}},
+      several{{.pages = 4, .page_size = 256, .preset = PackPreset::fast}};
   for (const MeshView& mesh : {view_of(ring.scene), long_strip}) {
     for (const UnwrapOptions& options : {free, square, several}) {
       last.clear();
@@ -316,7 +318,9 @@ TEST(Unwrap, ProgressEndsAtOneWithPartsKeptApart) {
     EXPECT_GE(f, fraction);
     fraction = f;
   };
-  ASSERT_TRUE(unwrap_mesh(view, {.page_size = 64, .part_gaps = true}, context).ok());
+  UnwrapOptions options{{.page_size = 64}};
+  options.part_gaps = true;
+  ASSERT_TRUE(unwrap_mesh(view, options, context).ok());
   EXPECT_EQ(fraction, 1);
 }
 

@@ -10,9 +10,10 @@
 
 namespace atlas::test {
 
-inline nlohmann::json written(const ExportReport& report) {
+inline nlohmann::json written(const ExportReport& report,
+                              const ReportRequest& request = {"atlas-export", {}, true}) {
   const TempFolder folder;
-  EXPECT_TRUE(write_json(report, folder / "report.json", {true}).ok());
+  EXPECT_TRUE(write_json(report, folder / "report.json", request).ok());
   return nlohmann::json::parse(TempFolder::read(folder / "report.json"));
 }
 
@@ -21,8 +22,6 @@ inline ExportReport complete_report() {
   ExportReport r;
   r.carried_out = r.simplified = r.error_measured = true;
   r.plan.steps = {{"grouping", true, ""}};
-  r.command = {"atlas-export", "scene.obj"};
-  r.options = {{"--output", "world.wrl"}};
   r.stages.resize(1);
   r.pages.resize(1);
   r.charts.resize(1);

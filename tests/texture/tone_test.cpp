@@ -17,7 +17,8 @@ constexpr ToneOperator kAll[] = {ToneOperator::linear, ToneOperator::reinhard, T
 LuminanceStatistics statistics(double scale) {
   LuminanceStatistics s;
   s.lit_area = 1;
-  s.percentile99 = 2 * scale;
+  s.percentile98 = 2 * scale;
+  s.middle = 0.3 * scale;
   s.maximum = 10 * scale;
   s.log_average = 0.3 * scale;
   s.mean = 0.5 * scale;
@@ -55,23 +56,22 @@ TEST(ToneMapping, RisesFromBlackToWhite) {
   }
 }
 
-// Where most of the surface is evenly lit and a lamp covers less than a hundredth, the 99th
-// percentile would show all of it white.
-TEST(ToneMapping, AMeasuredWhiteLeavesRoomAboveEvenLight) {
-  const auto white = [](double median, double percentile99, double percentile999) {
+// A fiftieth of what is visible is white, unless the middle would be shown brighter than 1/4 or
+// darker than 1/15 of white.
+TEST(ToneMapping, AMeasuredWhiteSuitsTheMiddle) {
+  const auto white = [](double middle, double percentile98) {
     LuminanceStatistics s = statistics(1);
-    s.median = median;
-    s.percentile99 = percentile99;
-    s.percentile999 = percentile999;
+    s.middle = middle;
+    s.percentile98 = percentile98;
+    s.maximum = 1e6;  // a lamp, and however bright it is
     const auto tone = make_tone_mapping({}, s);
     EXPECT_TRUE(tone.ok());
     return 1.0 / double(tone->scale);
   };
-  EXPECT_NEAR(white(10, 10, 490), 20, 1e-4);  // a lamp
-  EXPECT_NEAR(white(10, 10, 16), 16, 1e-4);   // a weaker one
-  EXPECT_NEAR(white(10, 10, 14), 10, 1e-4);   // hardly brighter
-  EXPECT_NEAR(white(7, 10, 490), 10, 1e-4);   // shadows remain visible
-  EXPECT_NEAR(white(8.5, 10, 490), 20, 1e-4);
+  EXPECT_NEAR(white(20, 20), 80, 1e-3);  // even light
+  EXPECT_NEAR(white(20, 79), 80, 1e-3);
+  EXPECT_NEAR(white(20, 150), 150, 1e-3);    // some of it is bright
+  EXPECT_NEAR(white(20, 40000), 300, 1e-3);  // as sunlight on the floor
 }
 
 TEST(ToneMapping, FollowsThePublishedCurves) {

@@ -40,12 +40,5 @@ TEST(PageUvs, AreSharesOfTheSidesOfTheirOwnPage) {
   }
 }
 
-TEST(PageUvs, TheLongestSideOfAllPagesHasTheSmallestTexel) {
-  EXPECT_EQ(texel_of_longest(std::array{Extent{256, 512}, Extent{1024, 64}, Extent{8, 8}}),
-            1.0 / 1024);
-  EXPECT_EQ(texel_of_longest(std::array{Extent{3, 7}}), 1.0 / 7);
-  EXPECT_EQ(texel_of_longest({}), 1);
-}
-
 }  // namespace
 }  // namespace atlas

@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "libatlas/pipeline/unwrap.h"
+#include "libatlas/unwrap/unwrap.h"
 #include "libatlas/view/gl_objects.h"
 #include "tests/support/shapes.h"
 #include "tests/view/shapes.h"
@@ -93,7 +93,7 @@ UnwrappedMesh unwrapped(const test::Shape& shape, std::int32_t page_size) {
   view.positions = shape.positions;
   view.indices = shape.indices;
   const UnwrapOptions options{
-      .pages = 2, .page_size = page_size, .packing = PackPreset::fast, .square = true};
+      {.pages = 2, .page_size = page_size, .square = true, .preset = PackPreset::fast}};
   Result<UnwrappedMesh> mesh = unwrap_mesh(view, options, {});
   EXPECT_TRUE(mesh.ok()) << mesh.status().message();
   return std::move(mesh.value());

@@ -12,6 +12,7 @@
 #include "libatlas/charts/merging/merge_options.h"
 #include "libatlas/core/degrees.h"
 #include "libatlas/core/glm_bridge.h"
+#include "libatlas/core/portable_math.h"
 
 namespace atlas {
 namespace {
@@ -178,7 +179,7 @@ class Absorber {
     const double limit = radians(input_.flatten.options.cone_degrees);
     if (limit <= 0) return true;
     const double between =
-        std::acos(std::clamp(glm::dot(to_dvec(a.cone.axis), to_dvec(b.cone.axis)), -1.0, 1.0));
+        portable::acos(std::clamp(glm::dot(to_dvec(a.cone.axis), to_dvec(b.cone.axis)), -1.0, 1.0));
     return between <= 2 * limit && std::max(a.cone.angle, b.cone.angle) <= limit;
   }
 

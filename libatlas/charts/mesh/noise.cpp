@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "libatlas/core/glm_bridge.h"
+#include "libatlas/core/portable_math.h"
 
 namespace atlas {
 namespace {
@@ -60,7 +61,7 @@ double angle(const Topology& topology, std::uint32_t half_edge) {
   const glm::dvec3 from = point(half_edge);
   const glm::dvec3 a = point(next_half_edge(half_edge)) - from,
                    b = point(previous_half_edge(half_edge)) - from;
-  return std::atan2(glm::length(glm::cross(a, b)), glm::dot(a, b));
+  return portable::atan2(glm::length(glm::cross(a, b)), glm::dot(a, b));
 }
 
 }  // namespace

@@ -1,6 +1,7 @@
 #include "libatlas/exporters/gltf/gltf_document.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstring>
 #include <limits>
@@ -17,6 +18,9 @@ namespace {
 
 constexpr int kFloat = 5126, kUint = 5125, kUshort = 5123, kArrayBuffer = 34962,
               kElementBuffer = 34963;
+
+constexpr const char *kMeshopt = "EXT_meshopt_compression",
+                     *kQuantization = "KHR_mesh_quantization";
 
 std::string word(std::size_t value) {
   const auto bits = static_cast<std::uint32_t>(value);
@@ -40,7 +44,8 @@ void write_glb(TextFile& file, std::string text, const std::string& binary) {
 
 }  // namespace
 
-GltfDocument::GltfDocument(const World& world, bool binary) : binary_(binary) {
+GltfDocument::GltfDocument(const World& world, bool binary)
+    : binary_(binary), compress_(world.compress_slip.has_value()) {
   json["asset"] = {{"version", "2.0"}, {"generator", "libatlas"}};
   if (!world.title.empty()) json["asset"]["extras"]["title"] = world.title;
   if (!world.info.empty()) json["asset"]["extras"]["info"] = world.info;
@@ -91,13 +96,45 @@ std::size_t GltfDocument::add_view(const void* data, std::size_t size, nlohmann:
   return json["bufferViews"].size() - 1;
 }
 
+void GltfDocument::use(const char* extension, bool required) {
+  for (const char* list : {"extensionsUsed", "extensionsRequired"}) {
+    if (!required && std::strcmp(list, "extensionsRequired") == 0) continue;
+    nlohmann::json& names = json[list];
+    if (std::find(names.begin(), names.end(), extension) == names.end()) names.push_back(extension);
+  }
+}
+
+// The second buffer has no bytes: it is as large as what the packed views become, one after the
+// other.
+std::size_t GltfDocument::add_packed(const std::string& bytes, nlohmann::json view,
+                                     nlohmann::json packing) {
+  use(kMeshopt, true);
+  while (bytes_.size() % 4 != 0) bytes_.push_back('\0');
+  while (unpacked_bytes_ % 4 != 0) ++unpacked_bytes_;
+  packing.update({{"buffer", 0}, {"byteOffset", bytes_.size()}, {"byteLength", bytes.size()}});
+  view.update({{"buffer", 1}, {"byteOffset", unpacked_bytes_}});
+  unpacked_bytes_ += view["byteLength"].get<std::size_t>();
+  view["extensions"][kMeshopt] = std::move(packing);
+  bytes_.append(bytes);
+  json["bufferViews"].push_back(std::move(view));
+  return json["bufferViews"].size() - 1;
+}
+
+std::size_t GltfDocument::add_vertices(const void* data, std::size_t count, std::size_t stride) {
+  nlohmann::json view = {{"target", kArrayBuffer}, {"byteStride", stride}};
+  if (!compress_) return add_view(data, count * stride, std::move(view));
+  view["byteLength"] = count * stride;
+  return add_packed(pack_vertices(data, count, stride), std::move(view),
+                    {{"mode", "ATTRIBUTES"}, {"count", count}, {"byteStride", stride}});
+}
+
 std::size_t GltfDocument::add_accessor(nlohmann::json accessor) {
   json["accessors"].push_back(std::move(accessor));
   return json["accessors"].size() - 1;
 }
 
 std::size_t GltfDocument::add_bounded(std::span<const Vec3f> values, const nlohmann::json& bounds) {
-  const std::size_t view = add_view(values.data(), values.size_bytes(), {{"target", kArrayBuffer}});
+  const std::size_t view = add_vertices(values.data(), values.size(), sizeof(Vec3f));
   nlohmann::json accessor = {
       {"bufferView", view}, {"componentType", kFloat}, {"type", "VEC3"}, {"count", values.size()}};
   accessor.update(bounds);
@@ -138,8 +175,7 @@ std::size_t GltfDocument::add_colours(std::span<const Vec3f> colours,
   rgba.reserve(4 * colours.size());
   for (std::size_t i = 0; i < colours.size(); ++i)
     rgba.insert(rgba.end(), {colours[i].x, colours[i].y, colours[i].z, alphas[i]});
-  const std::size_t view =
-      add_view(rgba.data(), rgba.size() * sizeof(float), {{"target", kArrayBuffer}});
+  const std::size_t view = add_vertices(rgba.data(), colours.size(), 4 * sizeof(float));
   return add_accessor({{"bufferView", view},
                        {"componentType", kFloat},
                        {"type", "VEC4"},
@@ -148,12 +184,45 @@ std::size_t GltfDocument::add_colours(std::span<const Vec3f> colours,
 
 std::size_t GltfDocument::add_uvs(std::vector<Vec2f> values) {
   for (Vec2f& uv : values) uv.y = 1 - uv.y;
-  const std::size_t view =
-      add_view(values.data(), values.size() * sizeof(Vec2f), {{"target", kArrayBuffer}});
+  const std::size_t view = add_vertices(values.data(), values.size(), sizeof(Vec2f));
   return add_accessor({{"bufferView", view},
                        {"componentType", kFloat},
                        {"type", "VEC2"},
                        {"count", values.size()}});
+}
+
+std::size_t GltfDocument::add_positions(std::span<const Vec3f> values, const PositionGrid& grid) {
+  use(kQuantization, true);
+  std::vector<std::array<std::uint16_t, 4>> rows;
+  std::array<std::uint16_t, 3> low{65535, 65535, 65535}, high{};
+  for (const Vec3f& p : values) {
+    rows.push_back(grid.at(p));
+    for (std::size_t k = 0; k < 3; ++k) {
+      low[k] = std::min(low[k], rows.back()[k]);
+      high[k] = std::max(high[k], rows.back()[k]);
+    }
+  }
+  const std::size_t view = add_vertices(rows.data(), rows.size(), sizeof rows[0]);
+  return add_accessor({{"bufferView", view},
+                       {"componentType", kUshort},
+                       {"type", "VEC3"},
+                       {"count", rows.size()},
+                       {"min", low},
+                       {"max", high}});
+}
+
+std::size_t GltfDocument::add_short_uvs(std::span<const Vec2f> values) {
+  use(kQuantization, true);
+  std::vector<std::array<std::uint16_t, 2>> rows;
+  for (const Vec2f& uv : values)
+    rows.push_back({static_cast<std::uint16_t>(std::lround(65535.0 * double(uv.x))),
+                    static_cast<std::uint16_t>(std::lround(65535.0 * (1 - double(uv.y))))});
+  const std::size_t view = add_vertices(rows.data(), rows.size(), sizeof rows[0]);
+  return add_accessor({{"bufferView", view},
+                       {"componentType", kUshort},
+                       {"normalized", true},
+                       {"type", "VEC2"},
+                       {"count", rows.size()}});
 }
 
 std::size_t GltfDocument::add_indices(std::span<const std::uint32_t> values) {
@@ -164,10 +233,15 @@ std::size_t GltfDocument::add_indices(std::span<const std::uint32_t> values) {
   const std::vector<std::uint16_t> shorts =
       is_short ? std::vector<std::uint16_t>(values.begin(), values.end())
                : std::vector<std::uint16_t>();
-  const nlohmann::json target = {{"target", kElementBuffer}};
+  const std::size_t size = is_short ? sizeof(std::uint16_t) : sizeof(std::uint32_t);
+  nlohmann::json target = {{"target", kElementBuffer}};
+  if (compress_) target["byteLength"] = values.size() * size;
   const std::size_t view =
-      is_short ? add_view(shorts.data(), shorts.size() * sizeof(std::uint16_t), target)
-               : add_view(values.data(), values.size_bytes(), target);
+      compress_
+          ? add_packed(pack_triangles(values), target,
+                       {{"mode", "TRIANGLES"}, {"count", values.size()}, {"byteStride", size}})
+      : is_short ? add_view(shorts.data(), shorts.size() * sizeof(std::uint16_t), target)
+                 : add_view(values.data(), values.size_bytes(), target);
   return add_accessor({{"bufferView", view},
                        {"componentType", is_short ? kUshort : kUint},
                        {"type", "SCALAR"},
@@ -188,6 +262,11 @@ std::string GltfDocument::text(const std::string& buffer_uri) {
   nlohmann::json buffer = {{"byteLength", bytes_.size()}};
   if (!buffer_uri.empty()) buffer["uri"] = buffer_uri;
   json["buffers"] = nlohmann::json::array({buffer});
+  if (unpacked_bytes_ > 0) {
+    nlohmann::json unpacked = {{"byteLength", unpacked_bytes_}};
+    unpacked["extensions"][kMeshopt]["fallback"] = true;
+    json["buffers"].push_back(std::move(unpacked));
+  }
   return json.dump(binary_ ? -1 : 1, ' ', false, nlohmann::json::error_handler_t::replace);
 }
 

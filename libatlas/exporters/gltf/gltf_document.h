@@ -13,6 +13,7 @@
 
 #include "libatlas/core/atomic_file.h"
 #include "libatlas/core/status.h"
+#include "libatlas/exporters/gltf/gltf_packing.h"
 #include "libatlas/exporters/world.h"
 
 namespace atlas {
@@ -27,7 +28,7 @@ void set_lightmap_page(std::int64_t page, nlohmann::json& primitive);
 class GltfDocument {
  public:
   // The document begins with the world's title and information. `binary`: whether it becomes a
-  // .glb.
+  // .glb. Attributes and indices are packed (EXT_meshopt_compression) if the world says so.
   GltfDocument(const World& world, bool binary);
 
   // The top level of the document, for parts that have no function here.
@@ -41,15 +42,23 @@ class GltfDocument {
   // RGBA of `colours` and as many `alphas`.
   std::size_t add_colours(std::span<const Vec3f> colours, std::span<const float> alphas);
   std::size_t add_uvs(std::vector<Vec2f> values);
+  // The same as whole numbers of 16 bits (KHR_mesh_quantization). Uvs are within 0..1.
+  std::size_t add_positions(std::span<const Vec3f> values, const PositionGrid& grid);
+  std::size_t add_short_uvs(std::span<const Vec2f> values);
   // Vectors of zeros, with bounds, which take no space in the file.
   std::size_t add_zeros(std::size_t count);
-  // Indices have 16 bits where that is enough.
+  // Indices of triangles have 16 bits where that is enough.
   std::size_t add_indices(std::span<const std::uint32_t> values);
 
   // Add data of any kind, and return its number. `view` holds the properties of the buffer view
   // except where its bytes are; `accessor` names a view.
   std::size_t add_view(const void* data, std::size_t size, nlohmann::json view);
   std::size_t add_accessor(nlohmann::json accessor);
+  // Adds a view of an attribute's values, `stride` bytes each (a multiple of 4, as glTF requires).
+  std::size_t add_vertices(const void* data, std::size_t count, std::size_t stride);
+
+  // Says that the file uses, or cannot be read without, an extension.
+  void use(const char* extension, bool required = false);
 
   // Adds a line of information on the whole file.
   void add_info(const std::string& line);
@@ -71,11 +80,15 @@ class GltfDocument {
   Status write(const std::filesystem::path& path, AtomicFiles& files, WorldFile& result);
 
  private:
+  // Describes `bytes`, which are packed, by the view of what they become.
+  std::size_t add_packed(const std::string& bytes, nlohmann::json view, nlohmann::json packing);
   std::size_t add_bounded(std::span<const Vec3f> values, const nlohmann::json& bounds);
   std::string text(const std::string& buffer_uri);
 
   bool binary_;
+  bool compress_;
   std::string bytes_;
+  std::size_t unpacked_bytes_ = 0;  // of views that are packed
 };
 
 // Returns a position of the world's coordinates, in metres and y-up.

@@ -81,10 +81,8 @@ class MaterialWriter {
       if (!number.ok()) return number.status();
       entry["pbrMetallicRoughness"]["baseColorTexture"] = {{"index", *number}};
     }
-    if (const auto list = entry.find("extensions"); list != entry.end()) {
-      for (const auto& [name, extension] : list->items()) extensions_.insert(name);
-      document_.json["extensionsUsed"] = extensions_;
-    }
+    if (const auto list = entry.find("extensions"); list != entry.end())
+      for (const auto& [name, extension] : list->items()) document_.use(name.c_str());
     document_.json["materials"].push_back(std::move(entry));
     return at->second;
   }
@@ -127,7 +125,6 @@ class MaterialWriter {
   const Scene& scene_;
   GltfDocument& document_;
   GltfTextures& files_;
-  std::set<std::string> extensions_;                                 // of all materials
   std::map<std::pair<std::uint32_t, bool>, std::size_t> materials_;  // with or without texture
   std::map<std::tuple<std::int32_t, TextureWrap, TextureWrap>, std::size_t> textures_;
   std::map<std::size_t, std::size_t> images_;

@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <optional>
 #include <utility>
 
 #include "libatlas/core/file_extension.h"
@@ -26,7 +27,9 @@ constexpr int kLinear = 9729, kLinearMipmapLinear = 9987, kClampToEdge = 33071;
 
 class PagesWriter {
  public:
-  PagesWriter(const World& world, GltfDocument& document) : world_(world), document_(document) {}
+  PagesWriter(const World& world, GltfDocument& document) : world_(world), document_(document) {
+    if (world.compress_slip) grid_ = position_grid(world.positions, *world.compress_slip);
+  }
 
   Status add_page(std::size_t number, WorldFile& result) {
     const Page& page = world_.pages[number];
@@ -34,7 +37,7 @@ class PagesWriter {
     const PageSides both(page);
     json primitives = json::array();
     for (const PageSides::Side& side : both.sides()) {
-      primitives.push_back(add_side(side, result));
+      primitives.push_back(add_side(side, !page.image.empty(), result));
       primitives.back()["material"] = document_.json["materials"].size() + primitives.size() - 1;
     }
     document_.json["meshes"].push_back({{"name", name}, {"primitives", std::move(primitives)}});
@@ -72,6 +75,9 @@ class PagesWriter {
     for (std::size_t i = 0; i < file["meshes"].size(); ++i) {
       file["nodes"][0]["children"].push_back(i + 2);
       file["nodes"].push_back({{"name", file["meshes"][i]["name"]}, {"mesh", i}});
+      if (!grid_) continue;
+      file["nodes"].back()["translation"] = {grid_->low.x, grid_->low.y, grid_->low.z};
+      file["nodes"].back()["scale"] = {grid_->step, grid_->step, grid_->step};
     }
     json roots = {0, 1};
     if (result.far_origin) {
@@ -84,15 +90,23 @@ class PagesWriter {
 
  private:
   // Returns a primitive that has no material yet.
-  json add_side(const PageSides::Side& side, WorldFile& result) {
-    const auto unified = unify_vertices<2>(side.indices.size(), [&](std::size_t k) {
+  json add_side(const PageSides::Side& side, bool has_image, WorldFile& result) {
+    auto unified = unify_vertices<2>(side.indices.size(), [&](std::size_t k) {
       return std::array{side.indices[k], side.uv_indices[k]};
     });
+    if (world_.compress_slip) {
+      const auto where = order_for_packing(unified.indices, unified.vertices.size());
+      const auto vertices = unified.vertices;
+      for (std::size_t v = 0; v < where.size(); ++v) unified.vertices[where[v]] = vertices[v];
+    }
     json primitive;
+    const auto positions = gather(world_.positions, unified.vertices, 0);
     primitive["attributes"]["POSITION"] =
-        document_.add_positions(gather(world_.positions, unified.vertices, 0));
+        grid_ ? document_.add_positions(positions, *grid_) : document_.add_positions(positions);
+    // Uvs without an image were rounded so that no texel is drawn for two charts, and stay so.
+    const auto uvs = gather(world_.uvs, unified.vertices, 1);
     primitive["attributes"]["TEXCOORD_0"] =
-        document_.add_uvs(gather(world_.uvs, unified.vertices, 1));
+        world_.compress_slip && has_image ? document_.add_short_uvs(uvs) : document_.add_uvs(uvs);
     primitive["indices"] = document_.add_indices(unified.indices);
     result.triangles += unified.indices.size() / 3;
     result.vertices += unified.vertices.size();
@@ -108,26 +122,43 @@ class PagesWriter {
     // A page without an image is lit by the viewer: unlit, it would be a silhouette.
     if (!page.image.empty()) {
       material["extensions"]["KHR_materials_unlit"] = json::object();
-      file["extensionsUsed"] = {"KHR_materials_unlit"};
+      document_.use("KHR_materials_unlit");
       file["samplers"] = json::array({{{"magFilter", kLinear},
                                        {"minFilter", kLinearMipmapLinear},
                                        {"wrapS", kClampToEdge},
                                        {"wrapT", kClampToEdge}}});
-      json image;
-      if (document_.binary()) {
-        auto bytes = read_image_bytes(page);
-        if (!bytes.ok()) return bytes.status();
-        image = document_.embedded_image(bytes->text(), "image/png");
-      } else {
-        image = GltfDocument::image_beside(page.image);
-      }
-      image["name"] = name;
-      file["images"].push_back(std::move(image));
-      const std::size_t index = file["images"].size() - 1;
-      file["textures"].push_back({{"sampler", 0}, {"source", index}});
-      material["pbrMetallicRoughness"]["baseColorTexture"] = {{"index", index}};
+      Result<std::size_t> texture = add_texture(page, name);
+      if (!texture.ok()) return texture.status();
+      material["pbrMetallicRoughness"]["baseColorTexture"] = {{"index", *texture}};
     }
     return material;
+  }
+
+  // Adds the page's image as a texture, and returns its number.
+  Result<std::size_t> add_texture(const Page& page, const std::string& name) {
+    constexpr const char* kWebp = "EXT_texture_webp";
+    const bool webp = lower_extension(page.image) == ".webp";
+    json& file = document_.json;
+    json image;
+    if (document_.binary()) {
+      auto bytes = read_image_bytes(page);
+      if (!bytes.ok()) return bytes.status();
+      image = document_.embedded_image(bytes->text(), webp ? "image/webp" : "image/png");
+    } else {
+      image = GltfDocument::image_beside(page.image);
+    }
+    image["name"] = name;
+    file["images"].push_back(std::move(image));
+    const std::size_t index = file["images"].size() - 1;
+    json texture = {{"sampler", 0}};
+    if (webp) {
+      document_.use(kWebp, true);
+      texture["extensions"][kWebp]["source"] = index;
+    } else {
+      texture["source"] = index;
+    }
+    file["textures"].push_back(std::move(texture));
+    return index;
   }
 
   static Result<FileBytes> read_image_bytes(const Page& page) {
@@ -143,6 +174,7 @@ class PagesWriter {
 
   const World& world_;
   GltfDocument& document_;
+  std::optional<PositionGrid> grid_ = {};  // of positions that become whole numbers
 };
 
 }  // namespace

@@ -100,7 +100,6 @@ const GltfRows* GltfData::source_rows(int number) {
 
 std::optional<std::size_t> GltfData::rows(int number, std::span<const std::uint32_t> vertices,
                                           bool bounds) {
-  constexpr int kArrayBuffer = 34962;
   const GltfRows* rows = source_rows(number);
   if (!rows || vertices.empty()) return {};
   if (*std::max_element(vertices.begin(), vertices.end()) >= rows->count) return {};
@@ -108,14 +107,12 @@ std::optional<std::size_t> GltfData::rows(int number, std::span<const std::uint3
   std::string bytes(vertices.size() * stride, '\0');
   for (std::size_t i = 0; i < vertices.size(); ++i)
     std::memcpy(&bytes[i * stride], rows->data + vertices[i] * rows->stride, rows->row_bytes);
-  json view = {{"target", kArrayBuffer}};
-  if (stride != rows->row_bytes) view["byteStride"] = stride;
   const tinygltf::Accessor& from = source_.model.accessors[std::size_t(number)];
   json accessor = source_.document["accessors"][std::size_t(number)];
   for (const char* key : {"byteOffset", "sparse", "min", "max"}) accessor.erase(key);
   accessor["count"] = vertices.size();
   if (bounds) accessor.update(bounds_of(from, bytes, stride));
-  accessor["bufferView"] = document_.add_view(bytes.data(), bytes.size(), std::move(view));
+  accessor["bufferView"] = document_.add_vertices(bytes.data(), vertices.size(), stride);
   return document_.add_accessor(std::move(accessor));
 }
 

@@ -89,6 +89,7 @@ void list_extensions(const json& before, json& document) {
     if (!had.contains(name)) used.insert(name);
   for (const std::string& name : listed(before, "extensionsRequired"))
     if (used.contains(name)) required.insert(name);
+  for (const std::string& name : listed(document, "extensionsRequired")) required.insert(name);
   for (const char* list : {"extensionsUsed", "extensionsRequired"}) document.erase(list);
   if (!used.empty()) document["extensionsUsed"] = used;
   if (!required.empty()) document["extensionsRequired"] = required;

@@ -8,6 +8,7 @@
 
 #include "libatlas/core/hull.h"
 #include "libatlas/core/parallel.h"
+#include "libatlas/core/portable_math.h"
 
 namespace atlas::pack {
 namespace {
@@ -125,11 +126,11 @@ std::vector<double> angles_for(const ChartOutline& outline, double& extent) {
     for (const Vec2d& p : hull) extent = std::max(extent, distance(a, p));
   }
   std::stable_sort(edges.begin(), edges.end(), [](const Vec2d& a, const Vec2d& b) {
-    return std::hypot(a.x, a.y) > std::hypot(b.x, b.y);
+    return portable::hypot(a.x, a.y) > portable::hypot(b.x, b.y);
   });
   edges.resize(std::min(edges.size(), kEdges));
   for (const Vec2d& e : edges) {
-    const double angle = -std::atan2(e.y, e.x);
+    const double angle = -portable::atan2(e.y, e.x);
     angles.push_back(angle < 0 ? angle + std::numbers::pi : angle);
   }
   return angles;

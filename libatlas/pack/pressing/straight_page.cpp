@@ -7,6 +7,7 @@
 
 #include "libatlas/core/clock.h"
 #include "libatlas/core/parallel.h"
+#include "libatlas/core/portable_math.h"
 #include "libatlas/core/random.h"
 #include "libatlas/pack/nesting/nest.h"
 #include "libatlas/pack/nesting/overlap_search.h"
@@ -318,7 +319,7 @@ bool is_straight(std::span<const ChartOutline> outlines) {
   for (const ChartOutline& o : outlines)
     for (const ChartOutline::Edge& e : o.edges) {
       const double x = std::abs(e.to.x - e.from.x), y = std::abs(e.to.y - e.from.y);
-      const double length = std::hypot(x, y);
+      const double length = portable::hypot(x, y);
       all += length;
       if (std::min(x, y) <= kAlong * length) along += length;
     }

@@ -157,6 +157,50 @@ TEST_F(AtlasPack, SpritesAreInTheOrderOfTheirNames) {
   EXPECT_EQ(listed, std::vector<std::string>(names.begin(), names.end()));
 }
 
+// Writes an image of 4 x 4 texels of a colour that no other name has.
+void write_frames(const fs::path& folder, const std::vector<std::string>& names) {
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    fs::create_directories((folder / names[i]).parent_path());
+    ASSERT_TRUE(
+        atlas::write_png(folder / names[i], atlas::Image8(4, 4, 3, std::uint8_t(9 * i)), {}).ok());
+  }
+}
+
+TEST_F(AtlasPack, FramesComeInNaturalOrderAndAreAnimations) {
+  const std::vector<std::string> names{
+      "fall.png",   "run/1.png",    "run/2.png",   "run/12.png",  "walk_1.png",
+      "walk_2.png", "walk_010.png", "walk_10.png", "walk_11.png", "walk_123456789012345678901.png",
+      "wave 7.png"};
+  write_frames(dir_ / "in", {names.rbegin(), names.rend()});
+  for (const char* format : {"hash", "array"}) {
+    ASSERT_EQ(run(fmt::format("images in -o s --page 64 --data {}", format)).exit_code, 0);
+    const auto data = nlohmann::ordered_json::parse(read("s.json"));
+    std::vector<std::string> listed;
+    for (const auto& [key, frame] : data["frames"].items())
+      listed.push_back(frame.contains("filename") ? std::string(frame["filename"]) : key);
+    EXPECT_EQ(listed, names) << format;
+    const auto& animations = data["animations"];
+    EXPECT_EQ(animations.size(), 2u) << animations;
+    EXPECT_EQ(animations["run"], nlohmann::json({"run/1.png", "run/2.png", "run/12.png"}));
+    EXPECT_EQ(animations["walk"],
+              nlohmann::json(std::vector<std::string>(names.begin() + 4, names.begin() + 10)));
+  }
+}
+
+// The frames of an animation may lie on several pages; a loader finds them by their names.
+TEST_F(AtlasPack, EachPageListsAllAnimations) {
+  write_frames(dir_ / "in", {"a1.png", "a2.png", "a3.png", "b.png"});
+  ASSERT_EQ(run("images in -o s --page 4x4").exit_code, 0);
+  for (int page = 0; page < 4; ++page) {
+    const auto data = nlohmann::json::parse(read(fmt::format("s-{}.json", page)));
+    EXPECT_EQ(data["animations"], nlohmann::json({{"a", {"a1.png", "a2.png", "a3.png"}}}));
+  }
+  fs::remove(dir_ / "in/a2.png");
+  fs::remove(dir_ / "in/a3.png");
+  ASSERT_EQ(run("images in -o s --page 64").exit_code, 0);
+  EXPECT_FALSE(nlohmann::json::parse(read("s.json")).contains("animations"));
+}
+
 // The data of each page tell the size of its own image.
 TEST_F(AtlasPack, EachPageTellsItsOwnSize) {
   fs::create_directories(dir_ / "in");
@@ -217,11 +261,16 @@ TEST_F(AtlasPack, TheNameOfAPageMayBeGivenWholeAndTheFilesAreNamed) {
       << several.output;
   const auto summary = nlohmann::json::parse(run("images in -o out --page 40x40 --json").output);
   EXPECT_EQ(summary["files"].size(), 6u);
-  const RunResult refused = run("images in -o sheet.jpg");
-  EXPECT_EQ(refused.exit_code, 2);
-  EXPECT_NE(refused.output.find("sheet.jpg: pages are PNG images (name them NAME or NAME.png)"),
-            std::string::npos)
-      << refused.output;
+  for (const char* name : {"sheet.jpg", "sheet.ktx2", "sheet.KTX2", "sheet.avif", "sheet.plist"}) {
+    const RunResult refused = run(fmt::format("images in -o {}", name));
+    EXPECT_EQ(refused.exit_code, 2) << name;
+    EXPECT_NE(refused.output.find(fmt::format("{}: pages are PNG images, and their data are JSON "
+                                              "(name them NAME, NAME.png or NAME.json)",
+                                              name)),
+              std::string::npos)
+        << refused.output;
+    EXPECT_FALSE(fs::exists(dir_ / fmt::format("{}.png", name)));
+  }
 }
 
 TEST_F(AtlasPack, NoSpriteIsWrittenOverThroughALink) {

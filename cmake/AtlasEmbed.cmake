@@ -1,0 +1,23 @@
+# atlas_embed(TARGET NAME file...): makes NAME.h for the sources of TARGET, which holds the text of each
+# file as a std::string_view called atlas::embedded::FILE_EXTENSION, such as page_css for page.css.
+function(atlas_embed target name)
+  set(header "// Made by cmake/AtlasEmbed.cmake.\n#pragma once\n\n#include <string_view>\n\n")
+  string(APPEND header "namespace atlas::embedded {\n\n")
+  foreach(file IN LISTS ARGN)
+    set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/${file})
+    file(READ ${CMAKE_CURRENT_SOURCE_DIR}/${file} text)
+    get_filename_component(base ${file} NAME)
+    string(REPLACE "." "_" variable ${base})
+    string(APPEND header "inline constexpr std::string_view ${variable} = R\"embedded(${text})embedded\";\n\n")
+  endforeach()
+  string(APPEND header "}  // namespace atlas::embedded\n")
+  set(path ${CMAKE_CURRENT_BINARY_DIR}/${name}.h)
+  set(before "")
+  if(EXISTS ${path})
+    file(READ ${path} before)
+  endif()
+  if(NOT before STREQUAL header)  # what includes it is compiled again only then
+    file(WRITE ${path} "${header}")
+  endif()
+  target_include_directories(${target} PRIVATE ${CMAKE_CURRENT_BINARY_DIR})
+endfunction()
