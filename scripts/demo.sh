@@ -12,10 +12,12 @@ cmake --build --preset release
 
 mkdir -p out
 build/examples/cabin/atlas-make-cabin --triangles "$triangles" -o out/cabin.obj --preview out/cabin.png
-build/apps/atlas-export/atlas-export out/cabin.obj -o out/cabin.wrl --up z --report out/report.json
+build/apps/atlas-export/atlas-export out/cabin.obj -o out/cabin.wrl --up z
+build/apps/atlas-export/atlas-export out/cabin.obj -o out/cabin.html --up z --report out/report.json
 
 echo
-echo "The world:  $PWD/out/cabin.wrl   (for any VRML97 viewer, such as view3dscene)"
+echo "The world:  $PWD/out/cabin.html   (open it in any browser: a double click is enough)"
+echo "As VRML:    $PWD/out/cabin.wrl   (for view3dscene, FreeWRL, atlas-play, ...)"
 echo "The report: $PWD/out/report.json"
 echo "A picture:  $PWD/out/cabin.png"
 if [ -x build/apps/atlas-play/atlas-play ]; then

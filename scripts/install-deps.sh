@@ -16,9 +16,9 @@ build_packages="
   libglfw3-dev libepoxy-dev libegl-dev libgl-dev libimgui-dev"
 test_packages="
   libgtest-dev libbenchmark-dev libcoin-dev xvfb xauth pngcheck gnuplot-nox valgrind
-  libgl1-mesa-dri libegl1 chromium"
+  libgl1-mesa-dri libegl1 abigail-tools python3"
 # Not every release has these. Tests that need them are skipped there.
-test_packages_if_any="view3dscene"
+test_packages_if_any="view3dscene chromium python3-websocket"
 
 case "${1:-all}" in
   build) wanted="$build_packages" if_any="" ;;

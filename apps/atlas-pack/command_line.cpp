@@ -214,6 +214,7 @@ void add_mesh(CLI::App& app, PackCommand& c) {
             return good ? std::string() : "'" + text + "' must be 1, 2, or a multiple of 4 to 64";
           },
           ""));
+  add_trust_options(*mesh, c.read);
   add_depfile_option(*mesh, c);
   add_page_options(*mesh, c);
   add_effort_options(*mesh, c);

@@ -4,9 +4,13 @@
 
 #include <CLI/CLI.hpp>
 #include <map>
+#include <span>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
+
+#include "libatlas/scene/reader.h"
 
 namespace atlas::app {
 
@@ -29,6 +33,19 @@ CLI::Validator choices(const std::map<std::string, T>& names) {
 // A flag whose presence makes `value` false.
 CLI::Option* add_off_flag(CLI::App& app, const std::string& name, bool& value,
                           const std::string& help);
+
+// Adds what a program that reads scenes lets users choose for those of strangers.
+void add_trust_options(CLI::App& app, ReadOptions& read);
+
+// An option's field, as the library's messages name it, and its flag.
+using FlagName = std::pair<std::string_view, std::string_view>;
+
+// Those of add_trust_options().
+inline constexpr FlagName kTrustFlags[] = {{"ReadOptions::confine", "--confine"},
+                                           {"ReadOptions::limits", "--no-limits"}};
+
+// Returns a message of the library with the flags in place of the fields, for the program's users.
+std::string with_flags(std::string_view text, std::span<const FlagName> names);
 
 // Parses the command line, after adding --version. Returns -1 to go on, or the exit code with which
 // the program should end: 0 after the help or the version, 2 after one line about what is wrong.

@@ -231,7 +231,7 @@ const Case kCases[] = {
     {"empty.wrl", "", ErrorCode::bad_input, "empty.wrl: is empty"},
     {"empty.wrz", "", ErrorCode::bad_input, "empty.wrz: is empty"},
     {"proto.wrl", "#VRML V2.0 utf8\nPROTO A [ ] { Group { } }\n", ErrorCode::bad_input,
-     "PROTO is not supported"},
+     "PROTO is not supported, and it declares A"},
     {"route.wrl", "#VRML V2.0 utf8\nROUTE a.b c.d\n", ErrorCode::bad_input, "'TO' expected"},
     {"lines.wrl", "#VRML V2.0 utf8\nGroup { \"two\nlines\" }\n", ErrorCode::bad_input,
      "'\"two' where a field should be"},
