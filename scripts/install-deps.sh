@@ -9,7 +9,8 @@ set -eu
 build_packages="
   g++ cmake ninja-build ccache pkg-config
   libopenmesh-dev libopenimageio-dev libglm-dev libeigen3-dev libtbb-dev libfmt-dev
-  nlohmann-json3-dev libtinygltf-dev libmeshoptimizer-dev libdraco-dev zlib1g-dev libwebp-dev
+  nlohmann-json3-dev libtinygltf-dev libmeshoptimizer-dev libdraco-dev zlib1g-dev libpng-dev libjpeg-dev
+  libwebp-dev
   libcli11-dev
   libembree-dev
   libglfw3-dev libepoxy-dev libegl-dev libgl-dev libimgui-dev"
