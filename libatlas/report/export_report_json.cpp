@@ -150,6 +150,7 @@ Json light_json(const ExportReport& r) {
           {"median", r.luminance.median},
           {"middle", r.luminance.middle},
           {"percentile98", r.luminance.percentile98},
+          {"percentile99", r.luminance.percentile99},
           {"maximum", r.luminance.maximum},
           {"mean", r.luminance.mean},
           {"log_average", r.luminance.log_average},
