@@ -31,13 +31,15 @@ if("reading" IN_LIST ATLAS_COMPONENTS)
   find_package(nlohmann_json REQUIRED)    # nlohmann-json3-dev: reports
   find_package(meshoptimizer REQUIRED)    # libmeshoptimizer-dev: compressed glTF
   find_package(ZLIB REQUIRED)             # zlib1g-dev: gzipped worlds
+  find_package(PNG REQUIRED)              # libpng-dev: PNG files
+  find_package(JPEG REQUIRED)             # libjpeg-dev: JPEG files
   find_path(TINYGLTF_INCLUDE_DIR tiny_gltf.h REQUIRED)  # libtinygltf-dev: reading glTF
   find_path(DRACO_INCLUDE_DIR draco/compression/decode.h REQUIRED)
   find_library(LIBATLAS_DRACO_LIBRARY draco REQUIRED)   # libdraco-dev: compressed glTF
   find_path(WEBP_INCLUDE_DIR webp/encode.h REQUIRED)
   find_library(LIBATLAS_WEBP_LIBRARY webp REQUIRED)     # libwebp-dev: pages as WebP
   list(APPEND libraries draco=${LIBATLAS_DRACO_LIBRARY} webp=${LIBATLAS_WEBP_LIBRARY})
-  pkg_check_modules(OIIO REQUIRED IMPORTED_TARGET OpenImageIO)  # libopenimageio-dev: image files
+  pkg_check_modules(OIIO REQUIRED IMPORTED_TARGET OpenImageIO)  # libopenimageio-dev: other image files
 endif()
 if("baking" IN_LIST ATLAS_COMPONENTS)
   find_path(OPENMESH_INCLUDE_DIR OpenMesh/Core/Mesh/TriMesh_ArrayKernelT.hh REQUIRED)

@@ -5,7 +5,7 @@
 # How each third-party target that a folder names is linked by those who use the installed libraries: by
 # pkg-config as a package, or with an option. OpenImageIO is not among them: the module that needs it is
 # loaded when needed (libatlas/image). Left out: what is headers only, and so ends at our own .cpp files.
-set(ATLAS_LINKED TBB::tbb=tbb fmt::fmt=fmt ZLIB::ZLIB=zlib meshoptimizer::meshoptimizer=-lmeshoptimizer
+set(ATLAS_LINKED TBB::tbb=tbb fmt::fmt=fmt ZLIB::ZLIB=zlib PNG::PNG=libpng JPEG::JPEG=libjpeg meshoptimizer::meshoptimizer=-lmeshoptimizer
                  libatlas::draco=-ldraco libatlas::webp=libwebp libatlas::mpfr=mpfr libatlas::gmp=gmp libatlas::OpenMeshCore=-lOpenMeshCore
                  Threads::Threads=-lpthread ${CMAKE_DL_LIBS}=-l${CMAKE_DL_LIBS}
                  glfw=glfw3 PkgConfig::EPOXY=epoxy PkgConfig::EGL=egl PkgConfig::IMGUI=imgui)

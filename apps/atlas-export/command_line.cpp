@@ -222,14 +222,19 @@ void add_run_options(CLI::App& app, ExportCommand& command) {
                  "Write a report of every stage, or with --plan of the plan: a page to read if it "
                  "ends in .html, else JSON; may be given several times")
       ->allow_extra_args(false);
+  app.add_flag("--report-charts", command.request.chart_rows,
+               "The JSON report has a row of figures for each chart")
+      ->needs("--report");
   app.add_option("--false-colour", command.options.false_colour,
                  "Also draw the light in false colours, from above and on the pages (.png)")
       ->excludes("--charts-only");
   app.add_option("--depfile", command.depfile,
                  "Also write a rule for make and ninja that lists every file that was read");
+  app.add_flag("--durable", command.options.durable,
+               "End only when the disk holds the world, so that it outlasts a power failure");
   app.add_flag("--plan", command.plan_only, "Print what would run and why, and stop");
   add_off_flag(app, "--no-error", command.options.measure_error, "Do not measure the pages' error");
-  app.add_flag("-q,--quiet", command.quiet, "Print errors only");
+  app.add_flag("-q,--quiet", command.quiet, "Print warnings and errors only");
   app.add_option("--threads", command.threads, "Threads; 0: all cores")
       ->check(within(0, 1024))
       ->capture_default_str();
@@ -320,8 +325,8 @@ std::optional<ExportCommand> parse_export_command(int argc, char** argv, int& ex
                 "--plan with --quiet tells nothing (leave one out, or add --report)");
     return std::nullopt;
   }
-  for (int i = 0; i < argc; ++i) command.words += (i > 0 ? " " : "") + quoted(argv[i]);
-  command.option_values = app.config_to_str(true, false);
+  for (int i = 0; i < argc; ++i) command.request.command += (i > 0 ? " " : "") + quoted(argv[i]);
+  command.request.options = option_values(app);
   command.options.report_pictures =
       !command.plan_only && std::any_of(command.reports.begin(), command.reports.end(), is_page);
   // An OBJ that keeps the scene has the colours of its vertices as the scene's file has them,

@@ -245,10 +245,8 @@ Status write_report(ExportReport report, const StageReport& reading,
   report.wall_seconds += reading.wall_seconds;
   report.peak_memory = std::max(report.peak_memory, reading.peak_memory);
   for (const std::filesystem::path& path : command.reports) {
-    const Status written =
-        app::is_page(path)
-            ? write_html(report, {command.words, command.option_values, app::version()}, path)
-            : write_json(report, path);
+    const Status written = app::is_page(path) ? write_html(report, command.request, path)
+                                              : write_json(report, path, command.request);
     if (!written.ok()) return written;
     terminal.line(fmt::format("{}: report", path.string()));
   }

@@ -237,10 +237,6 @@ CLI::Option* add_off_flag(CLI::App& app, const std::string& name, bool& value,
       name, [&value] { value = false; }, help);
 }
 
-std::string version() {
-  return LIBATLAS_VERSION;
-}
-
 int parse(CLI::App& app, int argc, char** argv) {
   const auto refuse = [&](const std::string& why) {
     const std::string command =
@@ -262,6 +258,17 @@ int parse(CLI::App& app, int argc, char** argv) {
   }
   const std::string empty = about_empty(app);
   return empty.empty() ? -1 : refuse(empty);
+}
+
+std::vector<std::pair<std::string, std::string>> option_values(const CLI::App& app) {
+  std::vector<std::pair<std::string, std::string>> values;
+  for (const CLI::Option* option : app.get_options()) {
+    std::string value = option->get_default_str();
+    if (option->count() > 0)
+      value = option->get_expected_min() == 0 ? "true" : CLI::detail::join(option->results(), " ");
+    if (!value.empty()) values.emplace_back(option->get_name(), value);
+  }
+  return values;
 }
 
 }  // namespace atlas::app

@@ -127,6 +127,7 @@ struct ExportOptions {
   // Files that appear together with the world, or not at all, such as lists of what it was made
   // from. ExportReport::files does not list them.
   std::vector<ExtraFile> extra_files = {};
+  bool durable = false;  // the disk holds all files before the export returns (AtomicFiles::commit)
   // Also draw the light in false colours, from above and on the pages, as a PNG file. Needs light.
   std::filesystem::path false_colour = {};
   bool report_pictures = false;  // make ExportReport::pictures

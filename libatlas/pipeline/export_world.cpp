@@ -111,12 +111,9 @@ class Export {
   }
 
  private:
-  // Without the module for image files, all stages up to the first page would run in vain.
+  // Without the module for such image files, all stages up to the first page would run in vain.
   Status check_module() const {
-    const bool kept =
-        options_.keep_scene && std::any_of(scene_.textures.begin(), scene_.textures.end(),
-                                           [](const Texture& t) { return t.encoded.empty(); });
-    return plan_.bake || kept ? check_image_module(options_.target.string()) : Status();
+    return plan_.bake && options_.exr ? check_image_module(options_.target.string()) : Status();
   }
 
   Status cut_charts() {

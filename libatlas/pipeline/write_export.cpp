@@ -170,14 +170,14 @@ World make_world(ExportToWrite& made, ExportReport& report, const Context& conte
   return world;
 }
 
-// Gives all files their names, those of `extra` too, and adds the sizes of the world's own to the
+// Gives all files their names, the extra ones too, and adds the sizes of the world's own to the
 // report and up to `bytes`.
-Status commit_files(const std::vector<ExtraFile>& extra, AtomicFiles& files, ExportReport& report,
+Status commit_files(const ExportOptions& options, AtomicFiles& files, ExportReport& report,
                     std::uint64_t& bytes) {
   const std::vector<std::filesystem::path> written = files.targets();
-  for (const ExtraFile& file : extra)
+  for (const ExtraFile& file : options.extra_files)
     if (Status s = files.write(file.path, file.bytes); !s.ok()) return s;
-  if (Status s = files.commit(); !s.ok()) return s;
+  if (Status s = files.commit(options.durable); !s.ok()) return s;
   for (const auto& path : written) {
     std::error_code error;
     const auto size = std::filesystem::file_size(path, error);
@@ -234,7 +234,7 @@ Result<StageOutcome> write_export(ExportToWrite made, AtomicFiles& files, Export
   }
   if (context.cancelled()) return Status::cancelled();
   std::uint64_t bytes = 0;
-  if (Status s = commit_files(made.options.extra_files, files, report, bytes); !s.ok()) return s;
+  if (Status s = commit_files(made.options, files, report, bytes); !s.ok()) return s;
   return StageOutcome{report.triangles_out, bytes, "bytes", writing_note(made, *world_file)};
 }
 

@@ -26,7 +26,7 @@ World with_images(const TempFolder& folder, World world) {
   return world;
 }
 
-Result<WorldFile> write(const World& world, const std::filesystem::path& path) {
+Result<WorldFile> write_page(const World& world, const std::filesystem::path& path) {
   AtomicFiles files;
   auto written = write_html(world, path, files, {});
   if (written.ok()) {
@@ -53,7 +53,7 @@ TEST(Html, HoldsEveryTriangleWithinItsStep) {
     World world = with_images(folder, test::wavy_world(40, 3));
     world.up = up;
     world.metres_per_unit = 0.25;
-    const auto written = write(world, folder / "w.html");
+    const auto written = write_page(world, folder / "w.html");
     ASSERT_TRUE(written.ok()) << written.status().message();
     const HtmlPage page(TempFolder::read(folder / "w.html"));
     EXPECT_EQ(std::int64_t(page.text().size()), written->bytes);
@@ -80,7 +80,7 @@ TEST(Html, InsideTheStepIsHalfAMillimetre) {
   const TempFolder folder;
   World world = with_images(folder, test::wavy_world(10, 1));  // 20 km long
   const auto step = [&] {
-    EXPECT_TRUE(write(world, folder / "w.html").ok());
+    EXPECT_TRUE(write_page(world, folder / "w.html").ok());
     return HtmlPage(TempFolder::read(folder / "w.html")).world["mesh"]["step"].get<double>();
   };
   EXPECT_GT(step(), 0.1);
@@ -100,7 +100,7 @@ TEST(Html, SidesArePartsOfTheirOwn) {
     world.uvs.push_back(world.uvs[page.uv_indices[k]]);
     page.uv_indices[k] = std::uint32_t(world.uvs.size() - 1);  // charts share no uv
   }
-  ASSERT_TRUE(write(world, folder / "w.html").ok());
+  ASSERT_TRUE(write_page(world, folder / "w.html").ok());
   const HtmlPage read(TempFolder::read(folder / "w.html"));
   ASSERT_EQ(read.parts.size(), 2u);
   const auto charts = [](const HtmlPage::Part& part) {
@@ -123,7 +123,7 @@ TEST(Html, IsOneFileThatLoadsNothing) {
   World world = with_images(folder, test::wavy_world(3, 1));
   world.title = "a <b>bold</b> & \"quoted\" title";
   world.info = {"</script><script>alert(1)</script>", "not UTF-8: \xff"};
-  ASSERT_TRUE(write(world, folder / "w.html").ok());
+  ASSERT_TRUE(write_page(world, folder / "w.html").ok());
   const HtmlPage page(TempFolder::read(folder / "w.html"));
   EXPECT_NE(page.text().find("<title>a &lt;b>bold&lt;/b> &amp; \"quoted\" title</title>"),
             std::string::npos);
@@ -140,7 +140,7 @@ TEST(Html, IsOneFileThatLoadsNothing) {
 TEST(Html, RefusesWhatItCannotShow) {
   const TempFolder folder;
   const auto refusal = [&](const World& world) {
-    const auto written = write(world, folder / "w.html");
+    const auto written = write_page(world, folder / "w.html");
     EXPECT_FALSE(std::filesystem::exists(folder / "w.html"));
     return written.ok() ? std::string("written") : written.status().message();
   };

@@ -49,7 +49,7 @@ std::vector<std::string> folder_order() {
 
 // What includes of other packages look like.
 const std::regex kThirdParty(
-    R"((glm|Eigen|CGAL|OpenMesh|OpenImageIO|OIIO|tbb|oneapi|nlohmann|fmt|embree[34]|epoxy|GLFW|imgui|boost|CLI|draco)[/.].*|(imgui|tiny_gltf|zlib|meshoptimizer)\.h)");
+    R"((glm|Eigen|CGAL|OpenMesh|OpenImageIO|OIIO|tbb|oneapi|nlohmann|fmt|embree[34]|epoxy|GLFW|imgui|boost|CLI|draco)[/.].*|(imgui|tiny_gltf|zlib|meshoptimizer|png|jpeglib|jerror)\.h)");
 
 struct Include {
   std::string target;  // the text between the quotes or brackets

@@ -28,7 +28,8 @@ constexpr std::size_t kMaxVisits = std::size_t{1} << 20;
 // Limits on vertices plus corners, some ten gigabytes, and less of files that have few bytes.
 // Meshes count as often as they are shown: a file of a few kilobytes can ask for a million times as
 // much as it holds.
-constexpr double kMaxShown = double(1 << 29), kFewShown = double(1 << 24), kMostExpansion = 1024;
+constexpr double kMaxShown = double(1 << 29), kFewShown = double(1 << 24),
+                 kMostShownExpansion = 1024;
 
 class GltfParser {
  public:
@@ -63,7 +64,7 @@ class GltfParser {
  private:
   double most_shown() const {
     const double bytes = double(gltf_buffer_bytes(model_));
-    return builder_.limits ? std::min(kMaxShown, std::max(kFewShown, kMostExpansion * bytes))
+    return builder_.limits ? std::min(kMaxShown, std::max(kFewShown, kMostShownExpansion * bytes))
                            : kMaxShown;
   }
 
