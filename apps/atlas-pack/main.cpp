@@ -40,14 +40,17 @@ void advise_on_pages(const app::PackCommand& command, const app::PackedAtlas& at
       atlas.pages.size(), wanted, count));
 }
 
-// Warns of a mostly empty page: sprites rarely need a page of 2048 x 2048.
+// Warns if the last page, which is the emptiest, is mostly empty: sprites rarely fill the 2048 x
+// 2048 texels of a page.
 void advise_on_room(const app::PackCommand& command, const app::PackedAtlas& atlas,
                     const Context& context) {
   constexpr double kMostlyEmpty = 0.25;
   if (command.kind != app::PackCommand::Kind::images || command.options.crop) return;
-  if (atlas.pages.size() != 1 || atlas.utilization >= kMostlyEmpty) return;
-  context.say(fmt::format("{} x {} texels are mostly empty (--crop cuts them to what is used)",
-                          atlas.pages[0].width, atlas.pages[0].height));
+  if (atlas.pages.empty() || atlas.last_page_fill >= kMostlyEmpty) return;
+  const Extent& last = atlas.pages.back();
+  context.say(fmt::format("{}{} x {} texels are mostly empty (--crop cuts them to what is used)",
+                          atlas.images.size() > 1 ? atlas.images.back() + ": " : "", last.width,
+                          last.height));
 }
 
 // "3 items on 1 page", "2 of 3 items on 1 page".

@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "libatlas/core/is_finite.h"
 #include "libatlas/core/luma.h"
 #include "libatlas/core/parallel.h"
 #include "libatlas/core/percentile.h"
@@ -237,7 +238,11 @@ Result<FidelityMeter> FidelityMeter::make(const ChartLight& light,
       return Status(ErrorCode::bad_input,
                     fmt::format("placement {} names chart {}, but there are {}", i,
                                 placements[i].chart, placed.size()));
-    placed[placements[i].chart] = static_cast<std::int64_t>(i);
+    const ChartPlacement& p = placements[i];
+    if (!is_finite(p.texels_per_unit) || !is_finite(p.offset) || !std::isfinite(p.cosine) ||
+        !std::isfinite(p.sine))
+      return Status(ErrorCode::bad_input, fmt::format("placement {} is not finite", i));
+    placed[p.chart] = static_cast<std::int64_t>(i);
   }
   const std::vector<Point> points = draw_points(light.sampler.scene(), options, context);
   auto state = std::make_unique<State>(State{light.tone, std::vector<Sample>(points.size()),

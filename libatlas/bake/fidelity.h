@@ -62,8 +62,8 @@ class FidelityMeter {
  public:
   // Draws the samples, which are the same for every thread count. `placements` are those of all
   // pages. The arguments are no longer used after the call. Errors: bad_input (a placement names a
-  // chart that does not exist, or a triangle a chart or uv that does not; see check_scene_of());
-  // cancelled.
+  // chart that does not exist or is not finite, or a triangle a chart or uv that does not exist;
+  // see check_scene_of()); cancelled.
   static Result<FidelityMeter> make(const ChartLight& light,
                                     std::span<const ChartPlacement> placements,
                                     const FidelityOptions& options, const Context& context);

@@ -6,6 +6,7 @@
 #include <limits>
 #include <utility>
 
+#include "libatlas/core/is_enumerator.h"
 #include "libatlas/core/is_finite.h"
 #include "libatlas/scene/check_scene.h"
 
@@ -107,6 +108,8 @@ Status check_world(const World& world) {
   if (Status s = check_viewpoint(world.viewpoint); !s.ok()) return s;
   if (!(world.metres_per_unit > 0) || !std::isfinite(world.metres_per_unit))
     return wrong(fmt::format("metres_per_unit is {} (must be above 0)", world.metres_per_unit));
+  if (!is_enumerator(world.up, Up::z))
+    return wrong(fmt::format("up is {} (give an Up)", int(world.up)));
   if (!world.uv_tiles.empty() && world.uv_tiles.size() != world.uvs.size())
     return wrong(
         fmt::format("it has tiles of {} uvs, and {} uvs", world.uv_tiles.size(), world.uvs.size()));

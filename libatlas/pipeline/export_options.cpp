@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "libatlas/core/file_extension.h"
+#include "libatlas/core/is_enumerator.h"
 #include "libatlas/exporters/world.h"
 #include "libatlas/image/webp.h"
 #include "libatlas/uvs/placement.h"
@@ -106,6 +107,13 @@ Status check_options(const ExportOptions& o) {
   if (o.png_compression < 0 || o.png_compression > 9) {
     return out_of_range("png_compression", "within 0..9");
   }
+  if (!is_enumerator(o.quantity, Quantity::colour)) return out_of_range("quantity", "a Quantity");
+  if (!is_enumerator(o.bake_method, BakeMethod::average))
+    return out_of_range("bake_method", "a BakeMethod");
+  if (!is_enumerator(o.packing, PackPreset::best)) return out_of_range("packing", "a PackPreset");
+  if (!is_enumerator(o.up, Up::z)) return out_of_range("up", "an Up");
+  if (!is_enumerator(o.texture_format, TextureFormat::webp))
+    return out_of_range("texture_format", "a TextureFormat");
   if (!o.false_colour.empty() && lower_extension(o.false_colour) != ".png")
     return out_of_range("false_colour", "the name of a .png file");
   if (Status s = check_weight(o); !s.ok()) return s;

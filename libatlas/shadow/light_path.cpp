@@ -9,6 +9,7 @@
 #include <numbers>
 
 #include "libatlas/core/glm_bridge.h"
+#include "libatlas/core/is_enumerator.h"
 #include "libatlas/shadow/blend.h"
 
 namespace atlas {
@@ -96,6 +97,10 @@ Vec3d sun_direction(const SunOptions& options, double hour) {
 }
 
 Result<LightPath> LightPath::make(const LightPathOptions& options) {
+  if (!is_enumerator(options.kind, PathKind::keys) || !is_enumerator(options.end, PathEnd::stop))
+    return Status{ErrorCode::bad_option,
+                  fmt::format("light path: kind {}, end {} (give a PathKind and a PathEnd)",
+                              int(options.kind), int(options.end))};
   const bool is_sun = options.kind == PathKind::sun;
   if (Status s = is_sun ? check_sun(options.sun) : check_directions(options); !s.ok()) return s;
   LightPath path;

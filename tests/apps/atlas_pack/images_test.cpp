@@ -106,6 +106,11 @@ TEST_F(AtlasPack, APageThatStaysMostlyEmptyIsNamedWithTheOptionThatCutsIt) {
   EXPECT_NE(run("images in -o out").output.find(words), std::string::npos);
   const RunResult cropped = run("images in -o out --crop");
   EXPECT_EQ(cropped.output.find("empty"), std::string::npos) << cropped.output;
+  ASSERT_TRUE(atlas::write_png(dir_ / "in/b.png", atlas::Image8(64, 64, 3, 7), {}).ok());
+  const RunResult several = run("images in -o out --page 64x64");
+  EXPECT_NE(several.output.find("out-1.png: 64 x 64 texels are mostly empty (--crop"),
+            std::string::npos)
+      << several.output;
 }
 
 // Starting from any page, the names lead to all others, and to no page twice.
