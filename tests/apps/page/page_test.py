@@ -10,6 +10,7 @@ import sys
 import tempfile
 import unittest
 
+sys.dont_write_bytecode = True  # the sources stay as they are
 import browser
 import page_file
 import room
@@ -17,9 +18,11 @@ import room
 EXPORT = sys.argv[1]
 POINTS = 1000
 
+PNG = ('--texture-format', 'png')
+
 
 def export(folder, *options):
-    target = folder / ('light.html' if '--linear' in options else 'room.html')
+    target = folder / f'room{len(options)}.html'
     subprocess.run([EXPORT, room.write(folder), '-o', target, '--atlases', '1', '--atlas-size', '256',
                     '--report', folder / 'report.json', '-q', *options], check=True)
     return target
@@ -76,7 +79,7 @@ class TheFile(unittest.TestCase):
         cls.folder.cleanup()
 
     def test_pages_show_the_light(self):
-        file = page_file.PageFile(export(self.path))
+        file = page_file.PageFile(export(self.path, *PNG))
         white = json.load(open(self.path / 'report.json'))['light']['white']
         square = 0
         for place, front, page, uv in points_of(file, POINTS):
@@ -85,7 +88,7 @@ class TheFile(unittest.TestCase):
             got = file.images[page].at(*uv)
             square += sum((w - g / 255) ** 2 for w, g in zip(want, got)) / 3
         self.assertGreater(-10 * math.log10(square / POINTS), 40)
-        self.assertEqual([p.name for p in self.path.glob('*.png')], [])
+        self.assertEqual(list(self.path.glob('*.png')), [])  # they are in the page
 
     def test_pages_of_light_hold_it(self):
         file = page_file.PageFile(export(self.path, '--linear'))
@@ -108,7 +111,7 @@ class InTheBrowser(unittest.TestCase):
     def setUpClass(cls):
         cls.folder = tempfile.TemporaryDirectory()
         path = pathlib.Path(cls.folder.name)
-        cls.plain, cls.linear = export(path), export(path, '--linear')
+        cls.webp, cls.plain, cls.linear = export(path), export(path, *PNG), export(path, '--linear')
         cls.page = browser.Browser()
 
     @classmethod
@@ -148,6 +151,18 @@ class InTheBrowser(unittest.TestCase):
                 self.assertLess(abs(w - g), 4, (x, y, want, list(got)))
             compared += 1
         self.expect_silence(self.plain)
+
+    def test_webp_looks_the_same(self):
+        self.assertIn('"image/webp"', self.webp.read_text())
+        self.assertLess(self.webp.stat().st_size, self.plain.stat().st_size)
+        pictures = []
+        for path in (self.webp, self.plain):
+            self.open(path)
+            self.page.value("document.getElementById('hint').hidden = true")
+            pictures.append(page_file.read_png(self.page.screenshot()).texels)
+            self.expect_silence(path)
+        square = sum((a - b) ** 2 for a, b in zip(*pictures)) / len(pictures[0])
+        self.assertGreater(10 * math.log10(255 ** 2 / square), 42)
 
     def test_values_are_those_of_the_pages(self):
         self.open(self.linear)
