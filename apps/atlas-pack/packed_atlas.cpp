@@ -61,6 +61,13 @@ PackedAtlas make_atlas(std::vector<PackedItem> items, const PackResult& result) 
   PackedAtlas atlas;
   atlas.pages = result.pages;
   atlas.utilization = result.utilization;
+  double before_last = 0;
+  for (std::size_t p = 0; p + 1 < atlas.pages.size(); ++p)
+    before_last += double(atlas.pages[p].area());
+  if (!atlas.pages.empty()) {
+    const double filled = double(result.placed_area) - result.fill_without_last * before_last;
+    atlas.last_page_fill = filled / double(atlas.pages.back().area());
+  }
   atlas.unplaced = result.unplaced.size();
   for (std::size_t i = 0; i < items.size(); ++i) items[i].at = result.placements[i];
   atlas.items = std::move(items);

@@ -19,6 +19,7 @@
 #include "libatlas/core/clock.h"
 #include "libatlas/core/degrees.h"
 #include "libatlas/core/glm_bridge.h"
+#include "libatlas/core/is_enumerator.h"
 #include "libatlas/core/parallel.h"
 #include "libatlas/core/progress.h"
 
@@ -309,6 +310,8 @@ Status check_options(const ChartOptions& options) {
     return must("crease_degrees", options.crease_degrees, "be above 0 degrees and at most 180");
   if (!(options.min_fill >= 0 && options.min_fill < 1))
     return must("min_fill", options.min_fill, "be at least 0 (never cut for it) and below 1");
+  if (!is_enumerator(options.preset, ChartPreset::best))
+    return must("preset", int(options.preset), "be a ChartPreset");
   constexpr const char* kAspect = "be a page's width / height within 1e-6..1e6 (1: square)";
   if (!(options.uv_aspect >= 1e-6 && options.uv_aspect <= 1e6))
     return must("uv_aspect", options.uv_aspect, kAspect);
@@ -346,12 +349,7 @@ Result<ChartSet> make_charts(const MeshView& mesh, const ChartOptions& options,
   given.density = relative.values;
   CanonicalMesh canonical = canonical_mesh(given, *welded);
   welded = WeldedVertices{};
-  given.positions = {};
-  given.indices = canonical.indices;
-  given.materials = canonical.materials;
-  given.density = canonical.density;
-  given.texcoord_indices = canonical.texcoord_indices;
-  given.seams = canonical.seams;
+  given = canonical.view(given.texcoords);
   Result<Topology> built = build_topology(
       {given, std::move(canonical.places), std::move(canonical.opposite)},
       {options.split_at_materials, options.keep_uv_charts, uv_aspects(options)}, context);

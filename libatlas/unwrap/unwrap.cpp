@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "libatlas/charts/charted_mesh.h"
+#include "libatlas/core/is_enumerator.h"
 #include "libatlas/core/no_index.h"
 #include "libatlas/unwrap/check_pages.h"
 #include "libatlas/unwrap/fill_pages.h"
@@ -42,6 +43,8 @@ Status check_options(const UnwrapOptions& options) {
   if (!(options.texels_per_unit >= 0) || !std::isfinite(options.texels_per_unit))
     return bad(fmt::format("texels_per_unit is {} (a number above 0, or 0 for as many as fit)",
                            options.texels_per_unit));
+  if (!is_enumerator(options.preset, PackPreset::best))
+    return bad(fmt::format("preset is {} (give a PackPreset)", int(options.preset)));
   return {};
 }
 
