@@ -113,7 +113,7 @@ TEST(PngJpeg, ChangedPngFilesAreRefused) {
   }
 }
 
-std::string chunk(const std::string& type, const std::string& data) {
+std::string png_chunk(const std::string& type, const std::string& data) {
   const std::string body = type + data;
   const auto sum = crc32(0, reinterpret_cast<const Bytef*>(body.data()), uInt(body.size()));
   return big(std::uint32_t(data.size()), 4) + body + big(std::uint32_t(sum), 4);
@@ -131,7 +131,7 @@ TEST(PngJpeg, TextsOfAPngTakeNoMemory) {
   std::string file = test::png_kinds().back().bytes;
   constexpr std::size_t kHeader = 8 + 25;
   for (int i = 0; i < 40; ++i)
-    file.insert(kHeader, chunk("zTXt", std::string("a\0\0", 3) + packed));
+    file.insert(kHeader, png_chunk("zTXt", std::string("a\0\0", 3) + packed));
   const std::int64_t before = peak_memory();
   EXPECT_TRUE(decode_image8(bytes_of(file), "a").ok());
   EXPECT_LT(peak_memory() - before, std::int64_t{100} << 20);
