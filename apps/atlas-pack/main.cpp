@@ -6,8 +6,10 @@
 #include <filesystem>
 #include <span>
 #include <string>
+#include <string_view>
 
 #include "apps/atlas-pack/commands.h"
+#include "apps/common/options.h"
 #include "apps/common/program.h"
 #include "libatlas/core/clock.h"
 #include "libatlas/core/counted.h"
@@ -38,14 +40,17 @@ void advise_on_pages(const app::PackCommand& command, const app::PackedAtlas& at
       atlas.pages.size(), wanted, count));
 }
 
-// Warns of a mostly empty page: sprites rarely need a page of 2048 x 2048.
+// Warns if the last page, which is the emptiest, is mostly empty: sprites rarely fill the 2048 x
+// 2048 texels of a page.
 void advise_on_room(const app::PackCommand& command, const app::PackedAtlas& atlas,
                     const Context& context) {
   constexpr double kMostlyEmpty = 0.25;
   if (command.kind != app::PackCommand::Kind::images || command.options.crop) return;
-  if (atlas.pages.size() != 1 || atlas.utilization >= kMostlyEmpty) return;
-  context.say(fmt::format("{} x {} texels are mostly empty (--crop cuts them to what is used)",
-                          atlas.pages[0].width, atlas.pages[0].height));
+  if (atlas.pages.empty() || atlas.last_page_fill >= kMostlyEmpty) return;
+  const Extent& last = atlas.pages.back();
+  context.say(fmt::format("{}{} x {} texels are mostly empty (--crop cuts them to what is used)",
+                          atlas.images.size() > 1 ? atlas.images.back() + ": " : "", last.width,
+                          last.height));
 }
 
 // "3 items on 1 page", "2 of 3 items on 1 page".
@@ -68,7 +73,9 @@ std::string names_of(std::span<const std::filesystem::path> files) {
 int main_of(int argc, char** argv) {
   app::PackCommand command;
   if (const int code = app::parse_command_line(argc, argv, command); code >= 0) return code;
+  app::name_input(command.input);
   app::Terminal terminal("atlas-pack", command.quiet || command.json);
+  terminal.reword([](std::string_view text) { return app::with_flags(text, app::kTrustFlags); });
   const Context context = terminal.context(command.threads);
   const double start = cpu_seconds();
   Result<app::PackedAtlas> atlas =

@@ -4,6 +4,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include "apps/atlas-pack/frame_names.h"
+
 namespace atlas::app {
 namespace {
 
@@ -39,6 +41,16 @@ Json other_pages(const PackedAtlas& atlas, std::uint32_t page) {
   return names;
 }
 
+// Returns the animations of all pages, since their frames may lie on several.
+Json animations_in(const PackedAtlas& atlas) {
+  std::vector<std::string_view> names;
+  for (const PackedItem& item : atlas.items) names.push_back(item.name);
+  Json animations = Json::object();
+  for (Animation& a : animations_of(names))
+    animations.get_ref<Json::object_t&>().emplace_back(a.name, std::move(a.frames));
+  return animations;
+}
+
 }  // namespace
 
 std::string data_of_page(const std::string& image) {
@@ -49,6 +61,13 @@ PackedAtlas make_atlas(std::vector<PackedItem> items, const PackResult& result) 
   PackedAtlas atlas;
   atlas.pages = result.pages;
   atlas.utilization = result.utilization;
+  double before_last = 0;
+  for (std::size_t p = 0; p + 1 < atlas.pages.size(); ++p)
+    before_last += double(atlas.pages[p].area());
+  if (!atlas.pages.empty()) {
+    const double filled = double(result.placed_area) - result.fill_without_last * before_last;
+    atlas.last_page_fill = filled / double(atlas.pages.back().area());
+  }
   atlas.unplaced = result.unplaced.size();
   for (std::size_t i = 0; i < items.size(); ++i) items[i].at = result.placements[i];
   atlas.items = std::move(items);
@@ -89,6 +108,10 @@ std::string to_json(const PackedAtlas& atlas, DataFormat format, std::uint32_t p
       frames.push_back(std::move(named));
     }
   }
+  // Lists of rectangles have none, even if their names end in numbers.
+  if (page != kAllPages)
+    if (Json animations = animations_in(atlas); !animations.empty())
+      root["animations"] = std::move(animations);
   Json& meta = root["meta"];
   meta["app"] = "atlas-pack";
   meta["version"] = "1.0";

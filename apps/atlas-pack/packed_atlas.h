@@ -25,6 +25,7 @@ struct PackedAtlas {
   std::vector<std::filesystem::path> files;  // all files written, the preview last
   std::size_t unplaced = 0, aliases = 0;
   double utilization = 0;
+  double last_page_fill = 0;  // the same of the last page alone
   double cpu_seconds = 0;
 };
 

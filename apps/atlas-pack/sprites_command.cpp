@@ -1,16 +1,20 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
+#include <optional>
 #include <set>
 #include <tuple>
 
 #include "apps/atlas-pack/commands.h"
+#include "apps/atlas-pack/frame_names.h"
 #include "apps/atlas-pack/preview.h"
 #include "apps/common/depfile.h"
 #include "apps/common/files.h"
 #include "libatlas/core/atomic_file.h"
 #include "libatlas/core/file_extension.h"
 #include "libatlas/image/image_io.h"
+#include "libatlas/image/image_sides.h"
 
 namespace atlas::app {
 namespace {
@@ -29,6 +33,15 @@ bool is_image(const fs::path& path) {
   static const char* const known[] = {".png", ".jpg",  ".jpeg", ".tga", ".bmp",
                                       ".tif", ".tiff", ".gif",  ".webp"};
   const std::string ending = lower_extension(path);
+  return std::find(std::begin(known), std::end(known), ending) != std::end(known);
+}
+
+// Whether an ending is that of images for graphics hardware or browsers, or of a format of sprite
+// data, that this program does not write. Other endings may be part of a name ("hero.v2").
+bool is_other_format(const std::string& ending) {
+  static const char* const known[] = {".ktx", ".ktx2",  ".basis", ".dds", ".pvr",   ".avif",
+                                      ".jxl", ".heic",  ".heif",  ".jp2", ".exr",   ".hdr",
+                                      ".svg", ".plist", ".xml",   ".csv", ".atlas", ".tpsheet"};
   return std::find(std::begin(known), std::end(known), ending) != std::end(known);
 }
 
@@ -66,7 +79,7 @@ void trim(Sprite& sprite, int threshold) {
 }
 
 struct SpriteFolder {
-  std::vector<fs::path> images;   // in the order of names
+  std::vector<fs::path> images;   // in natural order
   std::vector<fs::path> folders;  // those that were listed
 };
 
@@ -104,9 +117,30 @@ Result<SpriteFolder> list_sprites(const fs::path& folder, const Context& context
     return Status(
         ErrorCode::bad_input,
         fmt::format("{}: holds no image (png, jpg, tga, bmp, tif, gif or webp)", folder.string()));
-  std::sort(found.images.begin(), found.images.end());
+  std::sort(found.images.begin(), found.images.end(), natural_less);
   std::sort(found.folders.begin(), found.folders.end());
   return found;
+}
+
+// Refuses an image that is larger than the page, before memory is taken to decode it: a file of a
+// megabyte can state a gigabyte. One whose borders are trimmed may become smaller, but not from any
+// size.
+Status check_sides(const fs::path& path, const PackCommand& c) {
+  constexpr double kFewTexels = 1 << 24, kMostPages = 16;
+  const std::optional<ImageSides> sides = image_sides(path);
+  if (!sides) return {};
+  const Extent& page = c.options.page;  // a height of 0 is any height
+  const double width = page.width, height = page.height > 0 ? page.height : HUGE_VAL;
+  const double w = double(sides->width), h = double(sides->height);
+  const bool fits =
+      (w <= width && h <= height) || (c.options.allow_rotation && h <= width && w <= height);
+  if (fits || (c.trim && w * h <= std::max(kFewTexels, kMostPages * width * height))) return {};
+  return {
+      ErrorCode::no_solution,
+      fmt::format("{}: {} x {} texels are more than the page of {} x {} can hold (give a larger "
+                  "--page, or a smaller image)",
+                  path.string(), sides->width, sides->height, page.width,
+                  page.height > 0 ? fmt::format("{}", page.height) : "any height")};
 }
 
 Result<std::vector<Sprite>> read_sprites(const PackCommand& c, const SpriteFolder& folder,
@@ -117,6 +151,7 @@ Result<std::vector<Sprite>> read_sprites(const PackCommand& c, const SpriteFolde
   for (std::size_t i = 0; i < paths.size(); ++i) {
     if (context.cancelled()) return Status::cancelled();
     context.report("read", double(i) / double(paths.size()));
+    if (Status s = check_sides(paths[i], c); !s.ok()) return s;
     Result<Image8> image = read_image8(paths[i]);
     if (!image.ok()) return image.status();
     Sprite s;
@@ -164,16 +199,17 @@ void blit(const Sprite& sprite, const Placement& at, int extrude, Image8& page) 
 }
 
 // Returns the command with the base name of the outputs: NAME.png and NAME.json both mean NAME.
-// Refuses other image formats, because pages are PNG images.
+// Refuses the names of other formats, because pages are PNG images and their data are JSON.
 Result<PackCommand> with_base_name(const PackCommand& command) {
   const std::string ending = lower_extension(command.output);
   PackCommand c = command;
   if (ending == ".png" || ending == ".json")
     c.output.replace_extension();
-  else if (is_image(c.output))
-    return Status(
-        ErrorCode::bad_option,
-        fmt::format("{}: pages are PNG images (name them NAME or NAME.png)", c.output.string()));
+  else if (is_image(c.output) || is_other_format(ending))
+    return Status(ErrorCode::bad_option,
+                  fmt::format("{}: pages are PNG images, and their data are JSON (name them NAME, "
+                              "NAME.png or NAME.json)",
+                              c.output.string()));
   return c;
 }
 

@@ -262,7 +262,9 @@ void check_fallbacks(CheckList& list, const PolarDisc& disc, Row& row) {
   options.method = ParamMethod::isometric;
   ParamResult full;
   measure(3, row, [&]() -> Status {
-    full = parameterize(mesh, options, workspace);
+    Result<ParamResult> made = parameterize(mesh, options, workspace);
+    if (!made.ok()) return made.status();
+    full = std::move(*made);
     return {};
   });
   const double plain_stretch = measure_distortion(mesh, plain.uvs).stretch_999;

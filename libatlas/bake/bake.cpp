@@ -15,6 +15,7 @@
 #include "libatlas/bake/least_squares.h"
 #include "libatlas/bake/page_owners.h"
 #include "libatlas/charts/chart_triangles.h"
+#include "libatlas/core/is_enumerator.h"
 #include "libatlas/core/parallel.h"
 #include "libatlas/raster/coverage.h"
 #include "libatlas/raster/sampling.h"
@@ -226,6 +227,8 @@ Status check(const ChartLight& light, std::span<const ChartPlacement> placements
     return {ErrorCode::bad_option, fmt::format("{} shifts; there must be 1..64", o.shifts)};
   if (o.mip_levels < 0 || o.mip_levels > 10)
     return {ErrorCode::bad_option, fmt::format("{} mip levels; there must be 0..10", o.mip_levels)};
+  if (!is_enumerator(o.method, BakeMethod::average))
+    return {ErrorCode::bad_option, fmt::format("method {} (give a BakeMethod)", int(o.method))};
   if (Status s = check_scene_of(light); !s.ok()) return s;
   const int pad = gutter_pad(o.mip_levels);
   for (const ChartPlacement& p : placements) {

@@ -7,6 +7,8 @@
 #include <string>
 #include <utility>
 
+#include "libatlas/core/is_finite.h"
+
 namespace atlas {
 namespace {
 
@@ -44,6 +46,19 @@ Status check_values(const MeshView& mesh, std::string_view who) {
 
 }  // namespace
 
+Status check_triangle_lists(const ChartSet& charts, std::string_view who) {
+  const auto beyond = [&](const char* list, const std::vector<std::uint32_t>& ids,
+                          std::size_t end) -> Status {
+    const auto at =
+        std::find_if(ids.begin(), ids.end(), [&](std::uint32_t id) { return id >= end; });
+    if (at == ids.end()) return {};
+    return bad_input(fmt::format("{}: {}[{}] is {}, of {}", who, list, at - ids.begin(), *at, end));
+  };
+  if (Status s = beyond("triangle_chart", charts.triangle_chart, charts.charts.size()); !s.ok())
+    return s;
+  return beyond("flipped_triangles", charts.flipped_triangles, charts.chart_triangles.size());
+}
+
 Status check_chart_arrays(const ChartSet& charts, std::size_t indices, std::string_view who) {
   if (charts.triangle_uv.size() == indices && 3 * charts.chart_triangles.size() == indices)
     return {};
@@ -59,6 +74,13 @@ Status check_chart(const ChartSet& charts, std::size_t id, std::string_view who)
   if (std::size_t{chart.first_triangle} + chart.triangle_count > triangles ||
       std::size_t{chart.first_uv} + chart.uv_count > charts.uvs.size())
     return bad_input(fmt::format("{}: chart {} reaches beyond the chart set", who, id));
+  if (!(chart.size.x >= 0 && chart.size.y >= 0) || !is_finite(chart.size))
+    return bad_input(
+        fmt::format("{}: chart {} has a size of {} x {}", who, id, chart.size.x, chart.size.y));
+  for (std::size_t uv = chart.first_uv, end = uv + chart.uv_count; uv < end; ++uv) {
+    if (!is_finite(charts.uvs[uv]))
+      return bad_input(fmt::format("{}: uv {} of chart {} is not finite", who, uv, id));
+  }
   const std::uint32_t* const first = charts.chart_triangles.data() + chart.first_triangle;
   for (const std::uint32_t *t = first, *end = first + chart.triangle_count; t < end; ++t) {
     if (*t >= triangles)
@@ -78,6 +100,7 @@ Status check_chart_set(const MeshView& mesh, const ChartSet& charts, std::string
   if (Status s = check_chart_arrays(charts, mesh.indices.size(), who); !s.ok()) return s;
   if (Status s = check_vertices(mesh, charts, who); !s.ok()) return s;
   if (Status s = check_values(mesh, who); !s.ok()) return s;
+  if (Status s = check_triangle_lists(charts, who); !s.ok()) return s;
   std::size_t listed = 0;
   for (const Chart& chart : charts.charts) listed += chart.triangle_count;
   if (listed > charts.chart_triangles.size())

@@ -8,6 +8,7 @@
 #include "libatlas/charts/cells/grains.h"
 #include "libatlas/core/degrees.h"
 #include "libatlas/core/glm_bridge.h"
+#include "libatlas/core/sort_total.h"
 #include "libatlas/param/distortion.h"
 
 namespace atlas {
@@ -55,7 +56,7 @@ class Finder {
       copies.original[piece] = piece;
       digests.push_back(digest(piece));
     }
-    std::sort(digests.begin(), digests.end(), [](const Digest& a, const Digest& b) {
+    sort_total(digests.begin(), digests.end(), [](const Digest& a, const Digest& b) {
       if (a.hash != b.hash) return a.hash < b.hash;
       return a.edges != b.edges ? a.edges < b.edges : a.piece < b.piece;
     });

@@ -9,6 +9,7 @@
 #include "libatlas/charts/segment.h"
 #include "libatlas/core/clock.h"
 #include "libatlas/core/parallel.h"
+#include "libatlas/core/sort_total.h"
 
 namespace atlas {
 namespace {
@@ -183,7 +184,7 @@ void append(CutCharts part, CutCharts& whole) {
 }
 
 void sort_by_triangle(std::vector<FlatChart>& charts) {
-  std::sort(charts.begin(), charts.end(), [](const FlatChart& a, const FlatChart& b) {
+  sort_total(charts.begin(), charts.end(), [](const FlatChart& a, const FlatChart& b) {
     return a.triangles.front() < b.triangles.front();
   });
 }

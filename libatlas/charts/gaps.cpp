@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "libatlas/charts/chart_set_check.h"
+#include "libatlas/charts/chart_triangles.h"
 #include "libatlas/charts/totals.h"
 #include "libatlas/core/parallel.h"
 #include "libatlas/param/mesh/halfedges.h"
@@ -48,6 +49,7 @@ Flat flat_chart(const MeshView& mesh, const ChartSet& set, const Chart& chart) {
     std::array<std::uint32_t, 3> c{uv[0], uv[1], uv[2]};
     if (c[0] == c[1] || c[1] == c[2] || c[2] == c[0]) continue;
     if (std::binary_search(opposite.begin(), opposite.end(), t)) std::swap(c[1], c[2]);
+    c = from_lowest(c);
     for (std::uint32_t& corner : c) corner -= chart.first_uv;
     flat.corners.push_back(c);
     if (!mesh.density.empty()) flat.density.push_back(mesh.density[t]);

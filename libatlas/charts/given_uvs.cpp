@@ -13,6 +13,7 @@
 #include "libatlas/core/degrees.h"
 #include "libatlas/core/glm_bridge.h"
 #include "libatlas/core/parallel.h"
+#include "libatlas/core/sort_total.h"
 #include "libatlas/param/injectivity.h"
 #include "libatlas/param/orient.h"
 
@@ -21,7 +22,7 @@ namespace {
 
 // Triangles of a smaller altitude, relative to the square root of the chart's area, may be flipped
 // by the rounding of what is written.
-constexpr double kMinAltitude = 1e-7;
+constexpr double kMinGivenAltitude = 1e-7;
 
 // A chart whose uvs, with its surface's area, are longer than this multiple of its border is
 // flattened anew: squares squeezed by more than 4096, as by projections seen edge-on, and charts
@@ -55,7 +56,7 @@ class GivenChart {
     place(std::sqrt(surface / uv_area), flat);
     if (flat.size.x > kMaxLength * std::max(border_length_, std::sqrt(surface)))
       return Verdict::bad;
-    const InjectivityOptions safe{.clearance = kMinAltitude * std::sqrt(surface)};
+    const InjectivityOptions safe{.clearance = kMinGivenAltitude * std::sqrt(surface)};
     const Injectivity check = check_injectivity(mesh, uvs_, safe);
     const auto has_area = [&](std::uint32_t i) { return !input_.topology.thin(triangles[i]); };
     if (!check.injective || std::any_of(check.thin.begin(), check.thin.end(), has_area))
@@ -190,10 +191,10 @@ class GivenSet {
     take_over();
     if (!context_.cancelled() && result_.reflattened > 0) flatten_anew();
     if (context_.cancelled()) return {};
-    std::sort(result_.charts.begin(), result_.charts.end(),
-              [](const FlatChart& a, const FlatChart& b) {
-                return a.triangles.front() < b.triangles.front();
-              });
+    sort_total(result_.charts.begin(), result_.charts.end(),
+               [](const FlatChart& a, const FlatChart& b) {
+                 return a.triangles.front() < b.triangles.front();
+               });
     return std::move(result_);
   }
 

@@ -10,14 +10,16 @@
 #include "libatlas/charts/filling/long_charts.h"
 #include "libatlas/charts/flattening/flatten.h"
 #include "libatlas/charts/given_uvs.h"
+#include "libatlas/charts/mesh/canonical_mesh.h"
 #include "libatlas/charts/mesh/noise.h"
-#include "libatlas/charts/mesh/topology.h"
+#include "libatlas/charts/mesh/welded_mesh.h"
 #include "libatlas/charts/parts.h"
 #include "libatlas/charts/relative_density.h"
 #include "libatlas/charts/totals.h"
 #include "libatlas/core/clock.h"
 #include "libatlas/core/degrees.h"
 #include "libatlas/core/glm_bridge.h"
+#include "libatlas/core/is_enumerator.h"
 #include "libatlas/core/parallel.h"
 #include "libatlas/core/progress.h"
 
@@ -151,7 +153,7 @@ class Assembler {
 
   // A triangle without area that no chart holds is drawn nowhere: it joins the chart of a
   // neighbour, one that shares an edge if there is one, and lies on that edge or on a vertex; else
-  // any chart of its material.
+  // any chart of its object and material.
   void place_degenerate() {
     if (topology_.defects.degenerate_triangles == 0) return;
     std::vector<std::uint8_t> wanted(topology_.points.size(), 0);
@@ -197,20 +199,29 @@ class Assembler {
         return;
       }
     }
-    const std::uint32_t chart = first_chart_of_material(t);
+    const std::uint32_t chart = first_chart_like(t);
     set_.triangle_chart[t] = chart;
     for (std::uint32_t c = 0; c < 3; ++c) {
       set_.triangle_uv[3 * t + c] = set_.charts[chart].first_uv;
     }
   }
 
-  std::uint32_t first_chart_of_material(std::uint32_t t) {
-    if (first_of_material_.empty()) {
-      for (std::uint32_t k = 0; k < set_.charts.size(); ++k)
-        first_of_material_.emplace(set_.charts[k].material, k);
+  std::uint64_t object_and_material(std::uint32_t vertex, std::uint32_t material) const {
+    return key(mesh_.objects.empty() ? 0 : mesh_.objects[vertex], material);
+  }
+
+  std::uint32_t first_chart_like(std::uint32_t t) {
+    if (first_alike_.empty()) {
+      for (std::uint32_t k = 0; k < set_.charts.size(); ++k) {
+        const Chart& chart = set_.charts[k];
+        first_alike_.emplace(object_and_material(set_.uv_vertex[chart.first_uv], chart.material),
+                             k);
+      }
     }
     const auto id = static_cast<std::uint32_t>(set_.charts.size());
-    const auto [known, added] = first_of_material_.emplace(material(t), id);
+    const std::uint32_t vertex =
+        topology_.source_vertex[topology_.corner_vertex[3 * std::size_t{t}]];
+    const auto [known, added] = first_alike_.emplace(object_and_material(vertex, material(t)), id);
     if (!added) return known->second;
     Chart chart;  // a single point
     chart.first_uv = static_cast<std::uint32_t>(set_.uvs.size());
@@ -219,7 +230,7 @@ class Assembler {
     chart.axis = {0, 0, 1};
     chart.planar_projection = true;
     set_.uvs.push_back({});
-    set_.uv_vertex.push_back(mesh_.indices[3 * std::size_t{t}]);
+    set_.uv_vertex.push_back(vertex);
     set_.charts.push_back(chart);
     return id;
   }
@@ -246,7 +257,8 @@ class Assembler {
   const Topology& topology_;
   ChartSet& set_;
   double unscale_;
-  std::unordered_map<std::uint32_t, std::uint32_t> first_of_material_;  // filled when asked for
+  // By object and material, filled when asked for.
+  std::unordered_map<std::uint64_t, std::uint32_t> first_alike_;
 };
 
 // Length of the edges that exactly two triangles share in space, but not in uv.
@@ -268,6 +280,21 @@ double seam_length(const Topology& topology, const ChartSet& set) {
   return length / topology.scale + topology.cut_length;
 }
 
+// Names triangles and corners as the input does.
+void number_as_given(const CanonicalMesh& mesh, ChartSet& set) {
+  std::vector<std::uint32_t> values(set.triangle_chart.size());
+  for (std::uint32_t t = 0; t < values.size(); ++t)
+    values[mesh.input_triangle(t)] = set.triangle_chart[t];
+  set.triangle_chart.swap(values);
+  values.resize(set.triangle_uv.size());
+  for (std::uint32_t h = 0; h < values.size(); ++h)
+    values[mesh.input_corner(h)] = set.triangle_uv[h];
+  set.triangle_uv.swap(values);
+  for (auto* triangles : {&set.chart_triangles, &set.flipped_triangles})
+    for (std::uint32_t& t : *triangles) t = mesh.input_triangle(t);
+  std::sort(set.flipped_triangles.begin(), set.flipped_triangles.end());
+}
+
 }  // namespace
 
 Status check_options(const ChartOptions& options) {
@@ -283,6 +310,8 @@ Status check_options(const ChartOptions& options) {
     return must("crease_degrees", options.crease_degrees, "be above 0 degrees and at most 180");
   if (!(options.min_fill >= 0 && options.min_fill < 1))
     return must("min_fill", options.min_fill, "be at least 0 (never cut for it) and below 1");
+  if (!is_enumerator(options.preset, ChartPreset::best))
+    return must("preset", int(options.preset), "be a ChartPreset");
   constexpr const char* kAspect = "be a page's width / height within 1e-6..1e6 (1: square)";
   if (!(options.uv_aspect >= 1e-6 && options.uv_aspect <= 1e6))
     return must("uv_aspect", options.uv_aspect, kAspect);
@@ -314,12 +343,18 @@ Result<ChartSet> make_charts(const MeshView& mesh, const ChartOptions& options,
     texcoord_indices = usable_texcoords(given);
     given.texcoord_indices = texcoord_indices;
   }
-  Result<Topology> built = build_topology(
-      given, {options.split_at_materials, options.keep_uv_charts, uv_aspects(options)}, context);
-  if (!built.ok()) return built.status();
-  const Topology& topology = *built;
+  Result<WeldedVertices> welded = weld_mesh(given);
+  if (!welded.ok()) return welded.status();
   const RelativeDensity relative = relative_density(mesh.density);
   given.density = relative.values;
+  CanonicalMesh canonical = canonical_mesh(given, *welded);
+  welded = WeldedVertices{};
+  given = canonical.view(given.texcoords);
+  Result<Topology> built = build_topology(
+      {given, std::move(canonical.places), std::move(canonical.opposite)},
+      {options.split_at_materials, options.keep_uv_charts, uv_aspects(options)}, context);
+  if (!built.ok()) return built.status();
+  const Topology& topology = *built;
   ChartSet set;
   count_defects(topology.defects, set.repairs);
   for (const float area : topology.areas) set.surface_area += area;
@@ -337,8 +372,9 @@ Result<ChartSet> make_charts(const MeshView& mesh, const ChartOptions& options,
                                       : cut_charts({topology, given, options}, rest, set);
   if (context.cancelled()) return Status::cancelled();
   return_freed_memory();
-  Assembler(mesh, topology, relative.factor, set).run(charts);
+  Assembler(given, topology, relative.factor, set).run(charts);
   set.seam_length = seam_length(topology, set);
+  number_as_given(canonical, set);
   set.distortion = total_distortion(set.charts);
   set.timing.parameterization_cpu = own_cpu_seconds() - start - set.timing.segmentation_cpu;
   context.report("charts", 1);

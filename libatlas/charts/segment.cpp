@@ -14,6 +14,7 @@
 #include "libatlas/core/clock.h"
 #include "libatlas/core/degrees.h"
 #include "libatlas/core/parallel.h"
+#include "libatlas/core/portable_math.h"
 
 namespace atlas {
 namespace {
@@ -152,7 +153,7 @@ class Segmenter {
     cut_into_labels();
     if (context_.cancelled()) return {};
     Stopwatch watch(own_cpu_seconds);
-    const BorderRules rules{options_.crease_degrees, {axes_, std::cos(cone_ - 1e-5)}};
+    const BorderRules rules{options_.crease_degrees, {axes_, portable::cos(cone_ - 1e-5)}};
     Slits slits(topology_, {rules, bands_}, result_.partition, result_.frames);
     slits.close();
     smooth_borders(topology_, rules, result_.partition, result_.frames);

@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "libatlas/charts/chart_set_check.h"
+#include "libatlas/charts/chart_triangles.h"
 #include "libatlas/charts/filling/line_cut.h"
 #include "libatlas/charts/flattening/part_of_chart.h"
 #include "libatlas/charts/totals.h"
@@ -167,7 +168,7 @@ class Rebuilder {
       fresh_.uvs.push_back(old_.uvs[old.first_uv + i]);
       fresh_.uv_vertex.push_back(old_.uv_vertex[old.first_uv + i]);
     }
-    for (const std::uint32_t t : triangles_of(old)) {
+    for (const std::uint32_t t : triangles_of(old_, old)) {
       take(t);
       for (std::size_t k = 3 * std::size_t{t}; k < 3 * std::size_t{t} + 3; ++k) {
         fresh_.triangle_uv[k] = old_.triangle_uv[k] - old.first_uv + chart.first_uv;
@@ -199,9 +200,6 @@ class Rebuilder {
   }
 
  private:
-  std::span<const std::uint32_t> triangles_of(const Chart& chart) const {
-    return std::span(old_.chart_triangles).subspan(chart.first_triangle, chart.triangle_count);
-  }
   std::array<std::uint32_t, 3> old_uvs(std::uint32_t t) const {
     const std::uint32_t* const c = &old_.triangle_uv[3 * std::size_t{t}];
     return {c[0], c[1], c[2]};
@@ -211,6 +209,12 @@ class Rebuilder {
     fresh_.triangle_chart[t] = std::uint32_t(fresh_.charts.size());
   }
 
+  // Once local_ has the new numbers of a triangle's uvs.
+  void name_uvs(std::uint32_t t) {
+    for (std::size_t k = 3 * std::size_t{t}; k < 3 * std::size_t{t} + 3; ++k)
+      fresh_.triangle_uv[k] = local_[old_.triangle_uv[k]];
+  }
+
   // Returns the triangles that cover something in uv. Vertices are those of the mesh.
   FlatChart flat(const Chart& chart) const {
     FlatChart flat;
@@ -218,10 +222,11 @@ class Rebuilder {
       flat.uvs.push_back(old_.uvs[i]);
       flat.vertex.push_back(old_.uv_vertex[i]);
     }
-    for (const std::uint32_t t : triangles_of(chart)) {
+    for (const std::uint32_t t : triangles_of(old_, chart)) {
       std::array<std::uint32_t, 3> corners = old_uvs(t);
       if (names_uv_twice(corners)) continue;
       if (opposite_[t]) std::swap(corners[1], corners[2]);
+      corners = from_lowest(corners);
       for (std::uint32_t& c : corners) c -= chart.first_uv;
       flat.triangles.push_back(t);
       flat.corners.push_back(corners);
@@ -275,7 +280,7 @@ class Rebuilder {
         for (const std::uint32_t uv : old_uvs(t)) piece_of[uv - chart.first_uv] = i;
       }
     }
-    for (const std::uint32_t t : triangles_of(chart)) {
+    for (const std::uint32_t t : triangles_of(old_, chart)) {
       const auto c = old_uvs(t);
       if (!names_uv_twice(c)) continue;
       std::uint32_t piece = piece_of[c[0] - chart.first_uv];
@@ -301,20 +306,16 @@ class Rebuilder {
     for (std::size_t i = 0; i < piece.triangles.size(); ++i) {
       const std::uint32_t t = piece.triangles[i];
       take(t);
-      std::array<std::uint32_t, 3> corners = piece.corners[i];
-      if (opposite_[t]) std::swap(corners[1], corners[2]);
-      for (std::size_t k = 0; k < 3; ++k) {
-        fresh_.triangle_uv[3 * std::size_t{t} + k] = chart.first_uv + corners[k];
-        local_[old_.triangle_uv[3 * std::size_t{t} + k]] = chart.first_uv + corners[k];
-      }
+      std::array<std::uint32_t, 3> old = old_uvs(t);
+      if (opposite_[t]) std::swap(old[1], old[2]);
+      old = from_lowest(old);
+      for (std::size_t k = 0; k < 3; ++k) local_[old[k]] = chart.first_uv + piece.corners[i][k];
+      name_uvs(t);
     }
     for (const std::uint32_t t : loose) {
       take(t);
-      for (std::size_t k = 3 * std::size_t{t}; k < 3 * std::size_t{t} + 3; ++k) {
-        fresh_.triangle_uv[k] = local_[old_.triangle_uv[k]];
-      }
+      name_uvs(t);
     }
-    std::sort(fresh_.chart_triangles.begin() + std::ptrdiff_t(first), fresh_.chart_triangles.end());
     if (!mesh_.materials.empty()) chart.material = mesh_.materials[fresh_.chart_triangles[first]];
     fresh_.charts.push_back(chart);
   }

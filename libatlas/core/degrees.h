@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "libatlas/core/portable_math.h"
+
 namespace atlas {
 
 constexpr double radians(double angle) {
@@ -15,7 +17,7 @@ constexpr double degrees(double angle) {
 }
 
 inline double cosine_of(double angle) {
-  return std::cos(radians(angle));
+  return portable::cos(radians(angle));
 }
 
 }  // namespace atlas

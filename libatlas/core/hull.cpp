@@ -3,12 +3,14 @@
 #include <algorithm>
 #include <cmath>
 
+#include "libatlas/core/portable_math.h"
+#include "libatlas/core/sort_total.h"
 #include "libatlas/core/wide_vectors.h"
 
 namespace atlas {
 
 double distance(const Vec2d& a, const Vec2d& b) {
-  return std::hypot(b.x - a.x, b.y - a.y);
+  return portable::hypot(b.x - a.x, b.y - a.y);
 }
 
 double squared_distance_to_segment(const Vec2d& p, const Vec2d& a, const Vec2d& b) {
@@ -29,8 +31,8 @@ bool cross_each_other(const Vec2d& a, const Vec2d& b, const Vec2d& c, const Vec2
 }
 
 double hull_area(std::vector<Vec2d>& points, std::vector<Vec2d>& hull) {
-  std::sort(points.begin(), points.end(),
-            [](const Vec2d& a, const Vec2d& b) { return a.x != b.x ? a.x < b.x : a.y < b.y; });
+  sort_total(points.begin(), points.end(),
+             [](const Vec2d& a, const Vec2d& b) { return a.x != b.x ? a.x < b.x : a.y < b.y; });
   return sorted_hull_area(points, hull);
 }
 

@@ -1,5 +1,7 @@
-// Internal: exact geometric predicates (by CGAL's filtered kernel, which only the .cpp includes).
-// The sign is that of the true determinant of the given doubles, unaffected by rounding errors.
+// Internal: exact geometric predicates. The sign is that of the true determinant of the given
+// doubles, unaffected by rounding errors, underflow or overflow: where rounding may decide, the
+// determinant is summed up exactly, as an expansion of doubles if coordinates are between 2^-400
+// and 2^500 or 0, and else in fixed point.
 #pragma once
 
 #include <algorithm>

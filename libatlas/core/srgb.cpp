@@ -3,15 +3,17 @@
 #include <cmath>
 #include <iterator>
 
+#include "libatlas/core/portable_math.h"
+
 namespace atlas {
 namespace {
 
 double decode_exact(double d) {
-  return d <= 0.04045 ? d / 12.92 : std::pow((d + 0.055) / 1.055, 2.4);
+  return d <= 0.04045 ? d / 12.92 : portable::pow((d + 0.055) / 1.055, 2.4);
 }
 
 double encode_exact(double l) {
-  return l <= 0.0031308 ? l * 12.92 : 1.055 * std::pow(l, 1 / 2.4) - 0.055;
+  return l <= 0.0031308 ? l * 12.92 : 1.055 * portable::pow(l, 1 / 2.4) - 0.055;
 }
 
 }  // namespace

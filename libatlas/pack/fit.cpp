@@ -8,6 +8,7 @@
 #include <optional>
 #include <utility>
 
+#include "libatlas/core/is_enumerator.h"
 #include "libatlas/pack/fitting/fit_at_scale.h"
 #include "libatlas/pack/fitting/fit_pages.h"
 #include "libatlas/pack/fitting/lost_room.h"
@@ -73,6 +74,12 @@ Status check_pages(const FitOptions& o) {
                         o.padding, o.alignment, o.page_size)};
   if (!(o.time_budget >= 0))
     return {ErrorCode::bad_option, "fit: time_budget is negative or not a number"};
+  if (!is_enumerator(o.preset, PackPreset::best))
+    return {ErrorCode::bad_option,
+            fmt::format("fit: preset {} (give a PackPreset)", int(o.preset))};
+  if (!(o.shapes_area >= 0) || !std::isfinite(o.shapes_area))
+    return {ErrorCode::bad_option,
+            fmt::format("fit: shapes_area is {} (at least 0)", o.shapes_area)};
   const bool power_of_two = o.power_of_two && !o.free_aspect;
   if (power_of_two && !std::has_single_bit(static_cast<std::uint32_t>(o.page_size)))
     return {ErrorCode::bad_option,

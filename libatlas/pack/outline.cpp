@@ -7,6 +7,7 @@
 #include <functional>
 #include <numbers>
 
+#include "libatlas/core/is_enumerator.h"
 #include "libatlas/core/parallel.h"
 #include "libatlas/pack/nesting/grid_choice.h"
 #include "libatlas/pack/nesting/nest.h"
@@ -44,6 +45,9 @@ Status check(std::span<const ChartShape> shapes, const OutlineOptions& o) {
     return {ErrorCode::bad_option, "outline: scale must be finite and above 0"};
   if (!(o.time_budget >= 0))
     return {ErrorCode::bad_option, "outline: time_budget is negative or not a number"};
+  if (!is_enumerator(o.preset, PackPreset::best))
+    return {ErrorCode::bad_option,
+            fmt::format("outline: preset {} (give a PackPreset)", int(o.preset))};
   if (Status s = pack::check_rotations(o.rotations); !s.ok()) return s;
   return pack::check_shapes(shapes);
 }

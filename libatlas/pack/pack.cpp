@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <bit>
 
+#include "libatlas/core/is_enumerator.h"
+#include "libatlas/core/sort_total.h"
 #include "libatlas/pack/rectangles/cells.h"
 #include "libatlas/pack/rectangles/page_shape.h"
 
@@ -50,6 +52,9 @@ Status check(std::span<const Extent> items, const PackOptions& o) {
     return bad(fmt::format("pack: square pages asked for, but the page is {} x {}", o.page.width,
                            o.page.height));
   if (!(o.time_budget >= 0)) return bad("pack: time_budget is negative or not a number");
+  if (!is_enumerator(o.preset, PackPreset::best) || !is_enumerator(o.engine, PackEngine::max_rects))
+    return bad(fmt::format("pack: preset {}, engine {} (give a PackPreset and a PackEngine)",
+                           int(o.preset), int(o.engine)));
   for (std::size_t i = 0; i < items.size(); ++i)
     if (items[i].width < 0 || items[i].height < 0)
       return {ErrorCode::bad_input, fmt::format("pack: item {} is {} x {} (sides must not be "
@@ -176,8 +181,8 @@ Result<PackResult> pack_rects(std::span<const Extent> items, const PackOptions& 
     else
       result.placements[active.ids[k]] = {p.page, cells.texel(p.x), cells.texel(p.y), p.rotated};
   }
-  std::sort(result.unplaced.begin(), result.unplaced.end(),
-            [](const UnplacedItem& a, const UnplacedItem& b) { return a.item < b.item; });
+  sort_total(result.unplaced.begin(), result.unplaced.end(),
+             [](const UnplacedItem& a, const UnplacedItem& b) { return a.item < b.item; });
   describe(items, options, result);
   return result;
 }

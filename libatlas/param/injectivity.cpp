@@ -7,6 +7,7 @@
 
 #include "libatlas/core/bounds.h"
 #include "libatlas/core/hull.h"
+#include "libatlas/core/portable_math.h"
 #include "libatlas/core/predicates.h"
 #include "libatlas/param/mesh/halfedges.h"
 #include "libatlas/param/mesh/rest_shape.h"
@@ -77,8 +78,8 @@ struct Slab {
       const glm::dvec2 d = to_glm(e.b) - to_glm(e.a);
       doubled += glm::dvec2(d.x * d.x - d.y * d.y, 2 * d.x * d.y);
     }
-    const double angle = std::atan2(doubled.y, doubled.x) / 2;
-    along = {std::cos(angle), std::sin(angle)};
+    const double angle = portable::atan2(doubled.y, doubled.x) / 2;
+    along = {portable::cos(angle), portable::sin(angle)};
     Bounds<glm::dvec2> bounds;
     for (const Edge& e : edges) {
       bounds.add(framed(to_glm(e.a)));

@@ -8,6 +8,7 @@
 #include <span>
 #include <vector>
 
+#include "libatlas/core/status.h"
 #include "libatlas/core/vec.h"
 
 namespace atlas {
@@ -51,5 +52,10 @@ struct LocalMesh {
   // 0xffffffff on the boundary. Empty: opposites are found from the vertices' numbers.
   std::span<const std::uint32_t> opposite = {};
 };
+
+// Checks what is said above of single numbers: ranges of indices and repeated vertices, finite
+// positions, densities, lengths of arrays. parameterize() does so; the other functions in this
+// folder rely on it. Linear. Error: bad_input, naming array and element.
+Status check_local_mesh(const LocalMesh& mesh);
 
 }  // namespace atlas

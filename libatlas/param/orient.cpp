@@ -8,7 +8,9 @@
 
 #include "libatlas/core/bounds.h"
 #include "libatlas/core/degrees.h"
+#include "libatlas/core/portable_math.h"
 #include "libatlas/core/predicates.h"
+#include "libatlas/core/sort_total.h"
 #include "libatlas/param/mesh/rest_shape.h"
 
 namespace atlas {
@@ -42,8 +44,8 @@ std::vector<Vec2d> hull_candidates(std::span<const Vec2d> points) {
 // lexicographically lowest point (Andrew 1979, monotone chain).
 std::vector<Vec2d> convex_hull(std::span<const Vec2d> points) {
   std::vector<Vec2d> p = hull_candidates(points);
-  std::sort(p.begin(), p.end(),
-            [](Vec2d a, Vec2d b) { return a.x != b.x ? a.x < b.x : a.y < b.y; });
+  sort_total(p.begin(), p.end(),
+             [](Vec2d a, Vec2d b) { return a.x != b.x ? a.x < b.x : a.y < b.y; });
   p.erase(std::unique(p.begin(), p.end()), p.end());
   if (p.size() < 3) return p;
   std::vector<Vec2d> hull(2 * p.size());
@@ -72,15 +74,15 @@ std::vector<Vec2d> outline(std::span<const Vec2d> uvs,
   return points;
 }
 
-using Box = Bounds<glm::dvec2>;
+using UvBox = Bounds<glm::dvec2>;
 
-double area_of(const Box& box) {
+double area_of(const UvBox& box) {
   return box.size().x * box.size().y;
 }
 
 // Returns the box of the points in the frame whose first axis is the unit vector d.
-Box box_along(std::span<const Vec2d> points, glm::dvec2 d) {
-  Box box;
+UvBox box_along(std::span<const Vec2d> points, glm::dvec2 d) {
+  UvBox box;
   for (const Vec2d p : points) box.add({d.x * p.x + d.y * p.y, d.x * p.y - d.y * p.x});
   return box;
 }
@@ -137,8 +139,8 @@ std::vector<BorderEdge> border_directions(std::span<const Vec2d> uvs,
 // narrower windows, so that long straight borders outweigh those that are only nearly straight.
 glm::dvec2 refine_direction(std::span<const BorderEdge> edges, double angle) {
   for (const double window : {0.5, 0.1, 0.02}) {
-    const double limit = std::cos(4 * radians(window));
-    const glm::dvec2 middle(std::cos(4 * angle), std::sin(4 * angle));
+    const double limit = portable::cos(4 * radians(window));
+    const glm::dvec2 middle(portable::cos(4 * angle), portable::sin(4 * angle));
     double c = 0, s = 0;
     for (const BorderEdge& e : edges) {
       const double cosine = glm::dot(middle, e.quadrupled);
@@ -146,9 +148,9 @@ glm::dvec2 refine_direction(std::span<const BorderEdge> edges, double angle) {
       c += e.length * cosine;
       s += e.length * cross(middle, e.quadrupled);
     }
-    if (c > 0) angle += std::atan2(s, c) / 4;
+    if (c > 0) angle += portable::atan2(s, c) / 4;
   }
-  return {std::cos(angle), std::sin(angle)};
+  return {portable::cos(angle), portable::sin(angle)};
 }
 
 // Finds the direction, modulo 90 degrees, with the largest border length. Returns false if that is
@@ -158,7 +160,7 @@ bool straight_direction(std::span<const BorderEdge> edges, glm::dvec2* out) {
   std::array<double, bins> length{};
   double total = 0;
   for (const BorderEdge& e : edges) {
-    double turn = std::atan2(e.quadrupled.y, e.quadrupled.x) / (2 * std::numbers::pi);
+    double turn = portable::atan2(e.quadrupled.y, e.quadrupled.x) / (2 * std::numbers::pi);
     turn -= std::floor(turn);
     length[std::min(static_cast<int>(turn * bins), bins - 1)] += e.length;
     total += e.length;
@@ -182,10 +184,10 @@ Orientation orient_for_packing(std::span<Vec2d> uvs,
   if (uvs.empty()) return out;
   const std::vector<Vec2d> hull = convex_hull(outline(uvs, border_edges));
   glm::dvec2 d = smallest_box(hull);
-  Box box = box_along(hull, d);
+  UvBox box = box_along(hull, d);
   glm::dvec2 straight;
   if (straight_direction(border_directions(uvs, border_edges), &straight)) {
-    const Box other = box_along(hull, straight);
+    const UvBox other = box_along(hull, straight);
     if (area_of(other) <= area_of(box) * (1 + straight_slack)) {
       d = straight;
       box = other;

@@ -1,15 +1,21 @@
 #include "libatlas/param/parameterize.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <limits>
 #include <optional>
 #include <span>
+#include <string>
 #include <utility>
 #include <vector>
 
 #include "libatlas/core/glm_bridge.h"
+#include "libatlas/core/is_enumerator.h"
+#include "libatlas/core/is_finite.h"
+#include "libatlas/core/no_index.h"
 #include "libatlas/param/descent/arap_solver.h"
 #include "libatlas/param/descent/descent.h"
 #include "libatlas/param/descent/flatten_disc.h"
@@ -196,8 +202,72 @@ ParamResult join_flat_parts(const LocalMesh& mesh, const FlatParts& parts,
 
 }  // namespace param
 
-ParamResult parameterize(const LocalMesh& mesh, const ParamOptions& options,
-                         ParamWorkspace& workspace) {
+namespace {
+
+Status check_start(const IsometricStart& start, std::size_t vertices) {
+  if (!start.uvs.empty() && start.frames)
+    return {ErrorCode::bad_input, "parameterize: start has uvs and frames (give one of them)"};
+  if (!start.uvs.empty() && start.uvs.size() != vertices)
+    return {ErrorCode::bad_input, fmt::format("parameterize: start has {} uvs for {} vertices",
+                                              start.uvs.size(), vertices)};
+  for (std::size_t v = 0; v < start.uvs.size(); ++v)
+    if (!is_finite(start.uvs[v]))
+      return {ErrorCode::bad_input, fmt::format("parameterize: uv {} of start is not finite", v)};
+  return {};
+}
+
+Status check_options(const ParamOptions& o) {
+  const auto must = [](const char* field, double value, const char* range) {
+    return Status(ErrorCode::bad_option,
+                  fmt::format("ParamOptions::{} is {:g}; it must be {}", field, value, range));
+  };
+  if (!(o.max_stretch > 1)) return must("max_stretch", o.max_stretch, "a number above 1");
+  if (!is_enumerator(o.method, ParamMethod::isometric))
+    return must("method", int(o.method), "a ParamMethod");
+  if (o.iterations < 0) return must("iterations", o.iterations, "at least 0");
+  if (o.squeeze_iterations < 0)
+    return must("squeeze_iterations", o.squeeze_iterations, "at least 0");
+  if (!(o.min_altitude >= 0) || !std::isfinite(o.min_altitude))
+    return must("min_altitude", o.min_altitude, "a length, or 0");
+  return {};
+}
+
+}  // namespace
+
+Status check_local_mesh(const LocalMesh& mesh) {
+  const auto wrong = [](std::string text) {
+    return Status(ErrorCode::bad_input, "local mesh: " + std::move(text));
+  };
+  const std::size_t vertices = mesh.positions.size(), triangles = mesh.triangles.size();
+  for (std::size_t v = 0; v < vertices; ++v)
+    if (!is_finite(mesh.positions[v])) return wrong(fmt::format("position {} is not finite", v));
+  for (std::size_t t = 0; t < triangles; ++t) {
+    const auto& [a, b, c] = mesh.triangles[t];
+    if (std::max({a, b, c}) >= vertices || a == b || b == c || c == a)
+      return wrong(fmt::format("triangle {} has the vertices {}, {} and {} (three of {})", t, a, b,
+                               c, vertices));
+  }
+  if (!mesh.density.empty() && mesh.density.size() != triangles)
+    return wrong(fmt::format("{} densities for {} triangles (one each, or none)",
+                             mesh.density.size(), triangles));
+  for (std::size_t t = 0; t < mesh.density.size(); ++t)
+    if (!(mesh.density[t] > 0) || !std::isfinite(mesh.density[t]))
+      return wrong(fmt::format("triangle {} has a density of {} (above 0)", t, mesh.density[t]));
+  if (!mesh.opposite.empty() && mesh.opposite.size() != 3 * triangles)
+    return wrong(fmt::format("{} opposites for {} half-edges (one each, or none)",
+                             mesh.opposite.size(), 3 * triangles));
+  for (std::size_t h = 0; h < mesh.opposite.size(); ++h)
+    if (mesh.opposite[h] != kNoIndex && mesh.opposite[h] >= 3 * triangles)
+      return wrong(fmt::format("half-edge {} has the opposite {} of {}", h, mesh.opposite[h],
+                               3 * triangles));
+  return {};
+}
+
+Result<ParamResult> parameterize(const LocalMesh& mesh, const ParamOptions& options,
+                                 ParamWorkspace& workspace) {
+  if (Status s = check_options(options); !s.ok()) return s;
+  if (Status s = check_local_mesh(mesh); !s.ok()) return s;
+  if (Status s = check_start(options.start, mesh.positions.size()); !s.ok()) return s;
   if (mesh.triangles.empty()) return param::with_room(mesh);
   double largest = 0;
   for (std::size_t v = 0; v < mesh.positions.size(); ++v) {

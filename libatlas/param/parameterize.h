@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "libatlas/core/status.h"
 #include "libatlas/core/vec.h"
 #include "libatlas/param/distortion.h"
 #include "libatlas/param/injectivity.h"
@@ -55,8 +56,10 @@ struct ParamResult {
 // workspace per thread. A single triangle always succeeds with stretch 1; a triangle without area
 // gets min_altitude. Without any triangle, all uvs are (0, 0), neither injective nor within the
 // bound. Lengths may have any magnitude, but the areas of the distortion become 0 or infinite where
-// doubles cannot hold them.
-ParamResult parameterize(const LocalMesh& mesh, const ParamOptions& options,
-                         ParamWorkspace& workspace);
+// doubles cannot hold them. Errors: bad_input, see check_local_mesh(), or because IsometricStart
+// has both uvs and frames, another number of uvs than of vertices, or a uv that is not finite;
+// bad_option.
+Result<ParamResult> parameterize(const LocalMesh& mesh, const ParamOptions& options,
+                                 ParamWorkspace& workspace);
 
 }  // namespace atlas

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "libatlas/core/file_extension.h"
+#include "libatlas/core/is_enumerator.h"
 #include "libatlas/exporters/world.h"
 #include "libatlas/image/webp.h"
 #include "libatlas/uvs/placement.h"
@@ -35,7 +36,8 @@ Status check_weight(const ExportOptions& o) {
   const bool webp = o.texture_format == TextureFormat::webp;
   if ((webp || o.compress) && !holds_compressed(o.target)) {
     return {ErrorCode::bad_option,
-            fmt::format("ExportOptions::{}: only glTF holds that (write .gltf or .glb)",
+            fmt::format("ExportOptions::{}: only glTF and .html hold that (write .gltf, .glb or "
+                        ".html)",
                         webp ? "texture_format" : "compress")};
   }
   if (o.webp_quality < 0 || o.webp_quality > 100)
@@ -61,9 +63,13 @@ Status check_options(const ExportOptions& o) {
   if (Status s = check_world_extension(o.target); !s.ok()) return s;
   if (o.keep_scene && !holds_scene(o.target)) {
     return {ErrorCode::bad_option,
-            "ExportOptions::keep_scene: VRML has no room for uvs beside the scene's own (write "
-            ".gltf, .glb or "
-            ".obj)"};
+            "ExportOptions::keep_scene: VRML has no room for uvs beside the scene's own, and .html "
+            "none for the scene (write .gltf, .glb or .obj)"};
+  }
+  if (o.linear && !holds_light(o.target) && !o.target.empty()) {
+    return {ErrorCode::bad_option,
+            "ExportOptions::linear: only pages of HTML hold the light itself (write .html, or add "
+            "ExportOptions::exr instead)"};
   }
   if (o.plain_pages < 1) return out_of_range("plain_pages", "at least 1");
   if (o.lightmap_pages < 1) return out_of_range("lightmap_pages", "at least 1");
@@ -101,6 +107,13 @@ Status check_options(const ExportOptions& o) {
   if (o.png_compression < 0 || o.png_compression > 9) {
     return out_of_range("png_compression", "within 0..9");
   }
+  if (!is_enumerator(o.quantity, Quantity::colour)) return out_of_range("quantity", "a Quantity");
+  if (!is_enumerator(o.bake_method, BakeMethod::average))
+    return out_of_range("bake_method", "a BakeMethod");
+  if (!is_enumerator(o.packing, PackPreset::best)) return out_of_range("packing", "a PackPreset");
+  if (!is_enumerator(o.up, Up::z)) return out_of_range("up", "an Up");
+  if (!is_enumerator(o.texture_format, TextureFormat::webp))
+    return out_of_range("texture_format", "a TextureFormat");
   if (!o.false_colour.empty() && lower_extension(o.false_colour) != ".png")
     return out_of_range("false_colour", "the name of a .png file");
   if (Status s = check_weight(o); !s.ok()) return s;

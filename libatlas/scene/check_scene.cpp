@@ -6,6 +6,7 @@
 #include <cmath>
 #include <span>
 
+#include "libatlas/core/is_enumerator.h"
 #include "libatlas/core/is_finite.h"
 #include "libatlas/image/file_kind.h"
 
@@ -169,6 +170,13 @@ Status check_materials(const Scene& scene) {
     if (!(material.alpha_cutoff >= 0) || !std::isfinite(material.alpha_cutoff))
       return wrong("the alpha_cutoff of materials[{}] is {} (must be 0 or more)", m,
                    material.alpha_cutoff);
+    if (!is_enumerator(material.alpha_mode, AlphaMode::blend) ||
+        !is_enumerator(material.wrap_u, TextureWrap::clamp) ||
+        !is_enumerator(material.wrap_v, TextureWrap::clamp))
+      return wrong(
+          "materials[{}] has the alpha_mode {}, wrap_u {} and wrap_v {} (give an "
+          "AlphaMode and a TextureWrap)",
+          m, int(material.alpha_mode), int(material.wrap_u), int(material.wrap_v));
   }
   for (std::size_t i = 0; i < scene.textures.size(); ++i) {
     const Image8& image = scene.textures[i].image;

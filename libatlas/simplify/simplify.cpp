@@ -108,9 +108,7 @@ class Run {
 void Run::build_charts() {
   const ChartSet& set = *geometry_.charts;
   std::vector<bool> flipped(set.chart_triangles.size(), false);
-  for (const std::uint32_t t : set.flipped_triangles) {
-    if (t < flipped.size()) flipped[t] = true;
-  }
+  for (const std::uint32_t t : set.flipped_triangles) flipped[t] = true;
   fine_.resize(set.charts.size());
   parallel_for(context_, fine_.size(), 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t c = begin; c < end; ++c) {

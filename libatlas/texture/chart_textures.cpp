@@ -11,6 +11,7 @@
 
 #include "libatlas/charts/chart_set_check.h"
 #include "libatlas/charts/chart_triangles.h"
+#include "libatlas/core/is_enumerator.h"
 #include "libatlas/core/parallel.h"
 #include "libatlas/core/pool.h"
 #include "libatlas/texture/downsizing.h"
@@ -207,6 +208,10 @@ Status check_scene_of(const ChartLight& light) {
     return {ErrorCode::bad_input,
             fmt::format("the charts are of a mesh of {} triangles, and the scene has {}", charted,
                         triangles)};
+  if (!is_enumerator(light.tone.op, ToneOperator::reinhard_devlin))
+    return {ErrorCode::bad_input,
+            fmt::format("the tone mapping's op is {} (give a ToneOperator)", int(light.tone.op))};
+  if (Status s = check_triangle_lists(light.charts, kWho); !s.ok()) return s;
   return check_chart_arrays(light.charts, 3 * triangles, kWho);
 }
 

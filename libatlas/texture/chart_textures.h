@@ -22,7 +22,8 @@ struct ChartLight {
 };
 
 // Whether the charts are those of the sampler's scene, as far as the number of triangles tells.
-// Error: bad_input, also if the charts' arrays are not as long as these triangles need.
+// Error: bad_input, also if the charts' arrays are not as long as these triangles need or name
+// charts or triangles that do not exist, or if the tone mapping has no operator.
 Status check_scene_of(const ChartLight& light);
 
 // Checks a chart of such a set and its light. Errors: bad_input if the chart reaches beyond the

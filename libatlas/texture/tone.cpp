@@ -7,6 +7,7 @@
 #include <cmath>
 #include <utility>
 
+#include "libatlas/core/is_enumerator.h"
 #include "libatlas/core/luma.h"
 
 namespace atlas {
@@ -114,6 +115,8 @@ Status check_options(const ToneOptions& o) {
     return must("chromatic_adaptation", o.chromatic_adaptation, "within 0..1");
   if (!within(o.light_adaptation, 0, 1))
     return must("light_adaptation", o.light_adaptation, "within 0..1");
+  if (!is_enumerator(o.op, ToneOperator::reinhard_devlin))
+    return must("op", int(o.op), "a ToneOperator");
   return {};
 }
 

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "libatlas/charts/chart_triangles.h"
+#include "libatlas/core/portable_math.h"
 
 namespace atlas {
 namespace {
@@ -35,8 +36,8 @@ ChartPlacement outlined(const FitPlacement& from, const LayoutOptions& options) 
   ChartPlacement to;
   to.outlined = true;
   to.offset = from.offset;
-  to.cosine = std::cos(from.angle);
-  to.sine = std::sin(from.angle);
+  to.cosine = portable::cos(from.angle);
+  to.sine = portable::sin(from.angle);
   to.x = from.box.x + options.padding;
   to.y = from.box.y + options.padding;
   to.width = from.box.width - 2 * options.padding;
@@ -72,9 +73,9 @@ ChartOutlines::ChartOutlines(const ChartSet& set, std::span<const Vec2d> density
       corners[i] = {set.uvs[i].x * density[c].x, set.uvs[i].y * density[c].y};
     }
     for (const std::size_t t : triangles_of(set, chart)) {
-      for (int k = 0; k < 3; ++k) {
-        triangles.push_back(set.triangle_uv[3 * t + k] - chart.first_uv);
-      }
+      const std::uint32_t* const uvs = &set.triangle_uv[3 * t];
+      for (const std::uint32_t uv : from_lowest({uvs[0], uvs[1], uvs[2]}))
+        triangles.push_back(uv - chart.first_uv);
     }
   }
   for (const Chart& chart : set.charts) {

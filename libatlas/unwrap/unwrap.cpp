@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <numeric>
 #include <string>
@@ -11,7 +10,9 @@
 #include <utility>
 
 #include "libatlas/charts/charted_mesh.h"
+#include "libatlas/core/is_enumerator.h"
 #include "libatlas/core/no_index.h"
+#include "libatlas/unwrap/check_pages.h"
 #include "libatlas/unwrap/fill_pages.h"
 #include "libatlas/unwrap/part_gaps.h"
 #include "libatlas/uvs/finish_uvs.h"
@@ -32,22 +33,9 @@ Status check_options(const UnwrapOptions& options) {
   const auto bad = [](std::string text) {
     return Status(ErrorCode::bad_option, "unwrap: " + std::move(text));
   };
-  if (options.pages < 1) return bad("pages is 0 (ask for at least one)");
-  if (options.page_size < 64 || options.page_size > 16384)
-    return bad(fmt::format("page_size is {} (64 to 16384 texels)", options.page_size));
-  const bool powers = options.square || options.pages > 1;
-  if (powers && !std::has_single_bit(std::uint32_t(options.page_size)))
-    return bad(fmt::format("page_size is {} (a power of two for square or several pages)",
-                           options.page_size));
-  if (options.padding < 0 || options.padding > options.page_size / 4)
-    return bad(fmt::format("padding is {} (0 to a quarter of page_size)", options.padding));
+  if (Status s = check_pages("unwrap", options); !s.ok()) return s;
   if (options.mip_levels < 0 || options.mip_levels > 10)
     return bad(fmt::format("mip_levels is {} (0 to 10)", options.mip_levels));
-  if (options.alignment < 1 || options.alignment > options.page_size / 4)
-    return bad(fmt::format("alignment is {} (1 to a quarter of page_size)", options.alignment));
-  if (powers && !std::has_single_bit(std::uint32_t(options.alignment)))
-    return bad(fmt::format("alignment is {} (a power of two for square or several pages)",
-                           options.alignment));
   if (alignment(options) > options.page_size / 4 || padding(options) > options.page_size / 4)
     return bad(fmt::format(
         "mip_levels is {}, whose cells of {} texels are more than a quarter of page_size",
@@ -55,6 +43,8 @@ Status check_options(const UnwrapOptions& options) {
   if (!(options.texels_per_unit >= 0) || !std::isfinite(options.texels_per_unit))
     return bad(fmt::format("texels_per_unit is {} (a number above 0, or 0 for as many as fit)",
                            options.texels_per_unit));
+  if (!is_enumerator(options.preset, PackPreset::best))
+    return bad(fmt::format("preset is {} (give a PackPreset)", int(options.preset)));
   return {};
 }
 
@@ -105,6 +95,16 @@ void join_corners(std::span<const std::uint32_t> indices, std::span<const Vec2f>
 }
 
 }  // namespace
+
+UnwrapOptions lightmap_options(double texels_per_metre, double metres_per_unit) {
+  UnwrapOptions options;
+  options.texels_per_unit = texels_per_metre * metres_per_unit;
+  options.mip_levels = 2;
+  options.padding = gutter_pad(options.mip_levels) + 1;
+  options.square = true;
+  options.part_gaps = true;
+  return options;
+}
 
 Result<UnwrappedMesh> unwrap_mesh(const MeshView& mesh, const UnwrapOptions& options,
                                   const Context& context) {

@@ -36,6 +36,12 @@ struct UnwrapOptions : PageOptions {
   bool part_gaps = false;
 };
 
+// The options for lightmaps of game engines: `square` pages, whose mip levels 0 to 2 can be built
+// and whose blocks of 4 x 4 texels can be compressed without mixing charts; `part_gaps`; and a
+// texel of padding more than that takes, within which charts are moved until no texel is drawn
+// twice. `texels_per_metre`: 0 for as many as the pages hold. `metres_per_unit`: of the positions.
+UnwrapOptions lightmap_options(double texels_per_metre, double metres_per_unit = 1);
+
 // Each vertex is a copy of one of the input's vertices. A vertex on a seam has a copy for each
 // side.
 struct UnwrappedMesh {

@@ -152,8 +152,11 @@ class Drawings {
   std::vector<std::uint32_t> corners_of(std::size_t c) const {
     std::vector<std::uint32_t> corners;
     corners.reserve(3 * std::size_t(chart(c).triangle_count));
-    for (const std::size_t t : triangles_of(placed_.charts, chart(c)))
-      corners.insert(corners.end(), &corners_[3 * t], &corners_[3 * t] + 3);
+    for (const std::size_t t : triangles_of(placed_.charts, chart(c))) {
+      for (const std::uint32_t corner :
+           from_lowest({corners_[3 * t], corners_[3 * t + 1], corners_[3 * t + 2]}))
+        corners.push_back(corner);
+    }
     return corners;
   }
 

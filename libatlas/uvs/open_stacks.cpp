@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "libatlas/core/no_index.h"
+#include "libatlas/core/portable_math.h"
 #include "libatlas/uvs/barrier_hessian.h"
 #include "libatlas/uvs/thin_uvs.h"
 
@@ -41,7 +42,7 @@ struct Barrier {
 
   explicit Barrier(double d) {
     if (d >= kFelt) return;
-    const double gap = d - kFelt, log = std::log(d / kFelt);
+    const double gap = d - kFelt, log = portable::log(d / kFelt);
     value = -gap * gap * log;
     slope = -2 * gap * log - gap * gap / d;
     curvature = -2 * log - 4 * gap / d + gap * gap / (d * d);

@@ -1,5 +1,9 @@
 #include "libatlas/uvs/round_uvs.h"
 
+#include <algorithm>
+#include <array>
+
+#include "libatlas/charts/chart_triangles.h"
 #include "libatlas/core/counting_sort.h"
 #include "libatlas/uvs/open_stacks.h"
 #include "libatlas/uvs/push_slivers.h"
@@ -7,6 +11,27 @@
 
 namespace atlas {
 namespace {
+
+using Corners = std::array<std::uint32_t, 3>;
+
+// Returns the corners sorted by uvs, so that nothing depends on the order of the input.
+std::vector<std::uint32_t> sorted_by_uv(std::span<const std::uint32_t> corners, std::size_t uvs) {
+  std::vector<Corners> triangles(corners.size() / 3);
+  const auto given = [&](std::size_t t) {
+    return from_lowest({corners[3 * t], corners[3 * t + 1], corners[3 * t + 2]});
+  };
+  const std::vector<std::uint32_t> begin = counting_sort(
+      triangles.size(), uvs, [&](std::size_t t) { return given(t)[0]; },
+      [&](std::size_t t, std::size_t at) { triangles[at] = given(t); });
+  std::vector<std::uint32_t> sorted;
+  sorted.reserve(corners.size());
+  for (std::size_t uv = 0; uv < uvs; ++uv) {
+    std::sort(triangles.begin() + begin[uv], triangles.begin() + begin[uv + 1]);
+    for (std::uint32_t i = begin[uv]; i < begin[uv + 1]; ++i)
+      sorted.insert(sorted.end(), triangles[i].begin(), triangles[i].end());
+  }
+  return sorted;
+}
 
 class SliverOpener {
  public:
@@ -17,6 +42,8 @@ class SliverOpener {
   // Returns how many triangles stay thin.
   std::size_t run() {
     if (count_thin() == 0) return 0;
+    sorted_ = sorted_by_uv(corners_, uvs_.size());
+    corners_ = sorted_;
     corners_at_ = sort_into_buckets(corners_.size(), uvs_.size(),
                                     [&](std::size_t corner) { return corners_[corner]; });
     for (const Vec2d& p : exact_) start_.push_back(to_glm(p));
@@ -53,6 +80,7 @@ class SliverOpener {
   void push_open() { push_slivers({corners_, corners_at_, start_}, exact_, farthest_, uvs_); }
 
   std::span<const std::uint32_t> corners_;
+  std::vector<std::uint32_t> sorted_;
   std::span<const Vec2d> exact_;
   double farthest_;
   std::vector<Vec2f>& uvs_;

@@ -46,7 +46,7 @@ struct FrameBlock {
   float inverse[4];
   float specular[4];
   float first_ray[4], ray_x[4], ray_y[4];
-  float map_x[4], map_y[4];
+  float map_x[2][4], map_y[2][4];
   float background[4];
 };
 
@@ -115,6 +115,11 @@ void put_ray(FrameBlock& b, int key, const KeyMap& map, const glm::dvec3& l) {
   b.behind[2 * key] = float(back.x);
   b.behind[2 * key + 1] = float(back.y);
   b.march[key] = float(texels);
+}
+
+void put_axes(FrameBlock& b, int key, const MapAxes& axes) {
+  put(b.map_x[key], {to_glm(axes.x), 0});
+  put(b.map_y[key], {to_glm(axes.y), 0});
 }
 
 // Stores where rays to the light leave the scene's box.
@@ -198,11 +203,11 @@ void Renderer::Impl::fill_block(const Camera& world_camera, const FrameLight& li
     b.march[3] = nearest == other || b.march[0] == 0 ? 1 : 2;
     b.ray_y[3] = float(1.0 / march_samples(options.march_steps, glm::degrees(between)));
     put_box(b, l, scene->bounds, scene->origin);
-    const MapAxes axes = map_axes(light.direction, options.up);
-    put(b.map_x, {to_glm(axes.x), pixel_size(b) * subpixel});
-    put(b.map_y, {to_glm(axes.y), 0});
+    put_axes(b, 0, map_axes(from.direction, options.up));
+    put_axes(b, 1, map_axes(shadow->fit(other).direction, options.up));
+    b.map_x[0][3] = float(pixel_size(b) * subpixel);
   }
-  b.map_y[3] = float(options.baked_strength);
+  b.map_y[0][3] = float(options.baked_strength);
   put(b.specular, {options.specular, options.shininess, options.roughness, options.map_resolution});
   glNamedBufferSubData(frame_block.get(), 0, sizeof b, &b);
 }

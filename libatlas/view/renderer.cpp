@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "libatlas/core/degrees.h"
+#include "libatlas/core/is_enumerator.h"
 #include "libatlas/view/context.h"
 #include "libatlas/view/renderer_impl.h"
 
@@ -116,6 +117,10 @@ Status check_options(const RenderOptions& o) {
             fmt::format("depths of {} bits: 16, 24 or 32 are possible", o.map_bits)};
   if (o.schedule.interval_frames < 1)
     return {ErrorCode::bad_option, "keys are at least one frame apart"};
+  if (!is_enumerator(o.shading, Shading::ward) || !is_enumerator(o.shadows, ShadowMethod::march))
+    return {ErrorCode::bad_option,
+            fmt::format("shading {}, shadows {}: a Shading and a ShadowMethod are possible",
+                        int(o.shading), int(o.shadows))};
   return check_strengths(o);
 }
 

@@ -27,8 +27,8 @@ layout(std140, binding = 0) uniform Frame {
   vec4 first_ray, ray_x, ray_y;  // from the eye, one unit of view depth long: through the image's
                                  // corner, and its change for each pixel; w: view depth is 1 / (w + w
                                  // * depth) with the first two, 1 / march's samples the third
-  vec4 map_x, map_y;  // axes of a map of the current light; how far a point may be off for each unit
-                      // of view depth (world), factor on the lightmap
+  vec4 map_x0, map_x1, map_y0, map_y1;  // axes of each map; x0: how far a point may be off for each
+                                        // unit of view depth (world), y0: factor on the lightmap
   vec4 background;  // rgb, encoded as the image is
 } frame;
 )";
@@ -134,7 +134,7 @@ std::string colours_text(const ShaderFeatures& f) {
   else
     s += lit(f) || f.lightmap ? "  vec3 light = vec3(0.0);\n" : "  vec3 light = vec3(1.0);\n";
   if (f.some_unlit && !f.baked_vertices) s += "  if (unlit) light = vec3(frame.inverse.w);\n";
-  if (f.lightmap) s += "  light += texture(lightmap, v_lightcoord).rgb * frame.map_y.w;\n";
+  if (f.lightmap) s += "  light += texture(lightmap, v_lightcoord).rgb * frame.map_y0.w;\n";
   if (lit(f)) s += f.some_unlit ? "  if (!unlit)" : "";
   if (lit(f)) s += "  light += frame.ambient.rgb;\n";
   s += fmt::format("  vec3 own = {} * light;\n", shown);
@@ -222,19 +222,10 @@ std::string lighting_text(const ShaderFeatures& f) {
   if (!shadows)
     s += "  float seen = nl > 0.0 ? 1.0 : 0.0;\n";
   else
-    // The offset moves a plane out of its own texels up to the filter's corners: along each of the
-    // map's axes, by the filter's reach times how far the normal leans that way. The depth bias
-    // grows with the tangent of the angle to the light, by which a plane's depth changes across a
-    // texel. It is never 0, since even a plane that faces the light is only as deep as the map says
-    // up to rounding. Graphics hardware snaps corners to fractions of a pixel before it
-    // interpolates depths, so the point may be off by what lies between two such fractions: the
-    // offset is enlarged by that. All act here and not on the casters, so that maps hold true
-    // depths, which the march needs.
-    s += R"(  float sine = sqrt(max(1.0 - nl * nl, 0.0));
-  float lean = abs(dot(n, frame.map_x.xyz)) + abs(dot(n, frame.map_y.xyz));
-  vec3 p = frame.eye.xyz + away + n * (frame.weights.z * lean + far * frame.map_x.w);
-  float bias = frame.eye.w + frame.corner.w * min(sine, 8.0 * nl) / max(nl, 1e-3);
-  float seen = nl > 0.0 ? visibility(p, bias) : 0.0;
+    // Graphics hardware snaps corners to fractions of a pixel before it interpolates depths, so the
+    // point may be off by what lies between two such fractions.
+    s += R"(  vec3 p = frame.eye.xyz + away;
+  float seen = nl > 0.0 ? visibility(p, n, far * frame.map_x0.w) : 0.0;
 )";
   if (!coloured(f)) return s + "  result = vec4(seen);\n}\n";
   s += R"(  vec2 blue_red = unpackHalf2x16(surface.y);

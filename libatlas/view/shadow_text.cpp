@@ -5,8 +5,31 @@ namespace atlas {
 namespace {
 
 // All maps are layers of one texture.
+//
+// A point's place in a map (uv, depth) is biased for that map: a key's texels lie as its own light
+// stands, which is not where the current light is. The offset moves a plane out of its own texels
+// up to the filter's corners: along each of the map's axes, by the filter's reach times how far the
+// normal leans that way, and by as much as the point itself may be off. The depth bias grows with
+// the tangent of the angle to the map's light, by which a plane's depth changes across a texel. It
+// is never 0, since even a plane that faces the light is only as deep as the map says up to
+// rounding. All act here and not on the casters, so that maps hold true depths, which the march
+// needs.
 constexpr const char* kMaps = R"(
 layout(binding = 1) uniform sampler2DArrayShadow maps;
+vec3 place(mat4 to_map, vec3 x, vec3 y, vec3 p, vec3 n, float off) {
+  float lean = abs(dot(n, x)) + abs(dot(n, y));
+  float facing = dot(n, cross(x, y));
+  float tangent = sqrt(max(1.0 - facing * facing, 0.0)) / max(facing, 1e-3);
+  vec3 m = (to_map * vec4(p + n * (frame.weights.z * lean + off), 1.0)).xyz;
+  m.z -= frame.eye.w + frame.corner.w * min(tangent, 8.0);
+  return m;
+}
+vec3 place0(vec3 p, vec3 n, float off) {
+  return place(frame.to_map0, frame.map_x0.xyz, frame.map_y0.xyz, p, n, off);
+}
+vec3 place1(vec3 p, vec3 n, float off) {
+  return place(frame.to_map1, frame.map_x1.xyz, frame.map_y1.xyz, p, n, off);
+}
 )";
 
 constexpr const char* kNearest = R"(
@@ -53,18 +76,18 @@ float visibility_at(float layer, vec2 uv, float depth) {
 )";
 
 constexpr const char* kOneMap = R"(
-float visibility(vec3 p, float bias) {
-  vec3 m = (frame.to_map0 * vec4(p, 1.0)).xyz;
-  return visibility_at(frame.ray0.w, m.xy, m.z - bias);
+float visibility(vec3 p, vec3 n, float off) {
+  vec3 m = place0(p, n, off);
+  return visibility_at(frame.ray0.w, m.xy, m.z);
 }
 )";
 
 constexpr const char* kTwoMaps = R"(
-float visibility(vec3 p, float bias) {
-  vec3 m0 = (frame.to_map0 * vec4(p, 1.0)).xyz;
-  vec3 m1 = (frame.to_map1 * vec4(p, 1.0)).xyz;
-  float v = frame.weights.x * visibility_at(frame.ray0.w, m0.xy, m0.z - bias) +
-            frame.weights.y * visibility_at(frame.ray1.w, m1.xy, m1.z - bias);
+float visibility(vec3 p, vec3 n, float off) {
+  vec3 m0 = place0(p, n, off);
+  vec3 m1 = place1(p, n, off);
+  float v = frame.weights.x * visibility_at(frame.ray0.w, m0.xy, m0.z) +
+            frame.weights.y * visibility_at(frame.ray1.w, m1.xy, m1.z);
   return min(v, 1.0);
 }
 )";
@@ -78,12 +101,13 @@ float visibility(vec3 p, float bias) {
 // search. If no miss is at most 2.5, the point is lit: with 2, smooth shadows lose a little of
 // their rims; with 4, a cabin's seats under a low sun have three times as many wrong pixels; with
 // 8, even more. If the first key sees nothing at all above the point along the ray, the point is
-// lit as that key says and its search ends, too. If nothing is near, the last part of the ray that
-// is under the height field (from `low` on) and then over it again (at `high`) is bisected, which
-// finds steep blockers between two samples. What it finds must lie within a texel: within 2.5, it
-// is the rim of an opening as often as a blocker. The loops' bounds are not constants, which keeps
-// compilers from unrolling them: the software renderer leaves a loop early but never skips a
-// branch.
+// lit as that key says and its search ends, too. A key that stands behind the surface shows the
+// surface's other side, nearly as if that were a blocker: it is asked last, and only what it shows
+// within a texel counts. If nothing is near, the last part of the ray that is under the height
+// field (from `low` on) and then over it again (at `high`) is bisected, which finds steep blockers
+// between two samples. What it finds must lie within a texel: within 2.5, it is the rim of an
+// opening as often as a blocker. The loops' bounds are not constants, which keeps compilers from
+// unrolling them: the software renderer leaves a loop early but never skips a branch.
 constexpr const char* kMarch = R"(
 layout(binding = 2) uniform sampler2DArray depths;
 float height(vec3 m, vec2 uv, float layer) {
@@ -95,19 +119,25 @@ float height(vec3 m, vec2 uv, float layer) {
 float share_of_height(float texels) {
   return texels > 0.0 ? clamp(1.5 * texels * frame.march.z, 0.1, 0.5) : 0.0;
 }
-float visibility(vec3 p, float bias) {
-  vec3 m = (frame.to_map0 * vec4(p, 1.0)).xyz;
-  vec3 other = (frame.to_map1 * vec4(p, 1.0)).xyz;
-  m.z -= bias;
-  other.z -= bias;
+// Normals are stored in 16 bits, so those of a floor along the light may point to either side.
+bool faces(vec3 x, vec3 y, vec3 n) {
+  return dot(n, cross(x, y)) > -1e-4;
+}
+float visibility(vec3 p, vec3 n, float off) {
+  bool faced0 = faces(frame.map_x0.xyz, frame.map_y0.xyz, n);
+  bool faced1 = faces(frame.map_x1.xyz, frame.map_y1.xyz, n);
+  bool swapped = faced1 && !faced0;
+  vec3 m = swapped ? place1(p, n, off) : place0(p, n, off);
+  vec3 other = swapped ? place0(p, n, off) : place1(p, n, off);
+  vec4 ray = swapped ? frame.ray1 : frame.ray0;
+  vec2 back = swapped ? frame.behind.zw : frame.behind.xy;
+  float texels = swapped ? frame.march.y : frame.march.x;
   vec3 leave = (frame.corner.xyz - p) * frame.inverse.xyz;
   float top = min(min(leave.x, leave.y), leave.z);
   float least = frame.march.z;
   int steps = int(1.0 / frame.ray_y.w + 0.5);
-  float over_other = height(other, other.xy, frame.ray1.w);
-  vec4 ray = frame.ray0;
-  vec2 back = frame.behind.xy;
-  float texels = frame.march.x;
+  bool both = faced0 && faced1;
+  float over_other = both ? height(other, other.xy, frame.ray1.w) : 0.0;
   vec3 at = m;
   float layer = ray.w, nearest = 1e30;
   bool open = false;
@@ -142,7 +172,7 @@ float visibility(vec3 p, float bias) {
       if (d > least && g * texels < 1.0) { best = d; gap = g; }
     }
     float miss = gap * texels;
-    if (miss < nearest) {
+    if (miss < (key == 0 || both ? nearest : min(nearest, 1.0))) {
       nearest = miss;
       layer = ray.w;
       at = vec3(m.xy + best * ray.xy, m.z - share_of_height(texels) * best);

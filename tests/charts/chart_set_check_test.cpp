@@ -77,16 +77,6 @@ TEST(ChartSetCheck, ChartsOfAnotherMeshAreBadInput) {
   }
 }
 
-TEST(ChartSetCheck, FlippedTrianglesThatDoNotExistAreIgnored) {
-  const Mesh mesh(grid(20, 20));
-  ChartSet set = checked_charts(mesh);
-  set.flipped_triangles = {1000000, 0xffffffff};
-  const Calls calls = call_all(mesh.view(), set);
-  for (const Status& status : {calls.check, calls.measured, calls.widened, calls.cut}) {
-    EXPECT_TRUE(status.ok()) << status.message();
-  }
-}
-
 TEST(ChartSetCheck, MaterialsAndDensitiesAreOnePerTriangle) {
   const Mesh mesh(grid(20, 20));
   const ChartSet set = checked_charts(mesh);

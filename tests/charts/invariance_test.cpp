@@ -11,6 +11,7 @@
 #include "libatlas/scene/reader.h"
 #include "tests/charts/chart_checks.h"
 #include "tests/charts/invariance.h"
+#include "tests/support/reordered.h"
 #include "tests/support/temp_folder.h"
 
 namespace atlas::test {
@@ -43,6 +44,27 @@ TEST(Invariance, PowersOfTwoChangeNoBit) {
         ASSERT_EQ(set.uvs[i].y, reference.uvs[i].y * factor) << shape.name << " 2^" << exponent;
       }
     }
+  }
+}
+
+// Compares the charts of a shape with those of the same triangles in another order, bit by bit.
+void expect_same_bits(const ChartSet& reference, const Reordered& other) {
+  const ChartSet set = charts_of(other.shape);
+  ASSERT_EQ(set.uvs, reference.uvs) << other.shape.name;
+  EXPECT_EQ(set.seam_length, reference.seam_length) << other.shape.name;
+  EXPECT_EQ(set.distortion.stretch_l2, reference.distortion.stretch_l2) << other.shape.name;
+  for (std::size_t i = 0; i < other.corner.size(); ++i) {
+    const std::uint32_t corner = other.corner[i];
+    ASSERT_EQ(set.triangle_uv[i], reference.triangle_uv[corner]) << other.shape.name;
+    ASSERT_EQ(set.triangle_chart[i / 3], reference.triangle_chart[corner / 3]);
+  }
+}
+
+TEST(Invariance, TheOrderOfTrianglesAndVerticesChangesNoBit) {
+  for (const Shape& shape : subjects()) {
+    const ChartSet reference = charts_of(shape);
+    for (std::uint64_t seed = 1; seed <= 3; ++seed)
+      expect_same_bits(reference, reordered(shape, seed));
   }
 }
 

@@ -6,6 +6,8 @@
 #include <cstdint>
 #include <random>
 
+#include "tests/core/orientation_oracle.h"
+
 namespace atlas {
 namespace {
 
@@ -27,6 +29,12 @@ TEST(Predicates, OrientationIsExact) {
   EXPECT_EQ(orientation({0, 0}, {1, 1}, {0.5, 0.5 + e}), 1);
   EXPECT_EQ(orientation({0, 0}, {1, 1}, {0.5, 0.5}), 0);
   EXPECT_EQ(orientation({1e-300, 0}, {1, 1e300}, {1e-300, 0}), 0);
+}
+
+TEST(Predicates, OrientationIsThatOfExactArithmetic) {
+  const test::OrientationCount count = test::compare_orientations(100'000, 2);
+  EXPECT_EQ(count.different, 0);
+  EXPECT_GT(count.collinear, 1000);
 }
 
 TEST(Predicates, SegmentsCross) {

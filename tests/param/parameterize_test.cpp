@@ -343,7 +343,7 @@ TEST(Parameterize, NoUnitIsTooLongOrTooShort) {
         ParamWorkspace workspace;
         LocalMesh mesh = disc.view();
         if (dense) mesh.density = density;
-        return parameterize(mesh, options, workspace);
+        return parameterize(mesh, options, workspace).value();
       };
       const ParamResult plain = flatten(d, {.method = method, .min_altitude = 1e-6});
       for (const int power : {-1000, -500, -120, 120, 333, 1000}) {

@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <span>
+#include <utility>
 
 #include "libatlas/param/descent/flatten_disc.h"
 #include "tests/param/shapes.h"
@@ -13,7 +14,9 @@ namespace atlas::testing {
 
 inline ParamResult run(const Disc& d, const ParamOptions& options = {}) {
   ParamWorkspace workspace;
-  return parameterize(d.view(), options, workspace);
+  Result<ParamResult> made = parameterize(d.view(), options, workspace);
+  EXPECT_TRUE(made.ok()) << made.status().message();
+  return made.ok() ? std::move(*made) : ParamResult{};
 }
 
 inline ParamResult run_with(const Disc& d, const param::FlattenOptions& options) {

@@ -1,6 +1,7 @@
 // Chart sets that contradict themselves, for calls that take one together with its mesh.
 #pragma once
 
+#include <cmath>
 #include <functional>
 #include <vector>
 
@@ -13,7 +14,7 @@ struct BrokenCharts {
   std::function<void(ChartSet&)> damage;  // of a set with several triangles in its first chart
 };
 
-// Breaks what every call reads: the ranges of charts, and the uvs of triangles.
+// Breaks what every call checks: the ranges of charts, their uvs, and the lists of triangles.
 inline std::vector<BrokenCharts> broken_charts() {
   return {{"no uvs", [](ChartSet& set) { set.uvs.clear(); }},
           {"a uv too few", [](ChartSet& set) { set.uvs.pop_back(); }},
@@ -26,7 +27,13 @@ inline std::vector<BrokenCharts> broken_charts() {
           {"ranges whose sum wraps around",
            [](ChartSet& set) { set.charts[0].first_triangle = 0xffffffff; }},
           {"uvs beyond the set", [](ChartSet& set) { set.charts[0].first_uv = 1000000; }},
-          {"more uvs than there are", [](ChartSet& set) { set.charts[0].uv_count = 1000000; }}};
+          {"more uvs than there are", [](ChartSet& set) { set.charts[0].uv_count = 1000000; }},
+          {"a uv that is no number", [](ChartSet& set) { set.uvs[2].y = NAN; }},
+          {"a size that is no number", [](ChartSet& set) { set.charts[0].size.x = NAN; }},
+          {"a size below 0", [](ChartSet& set) { set.charts[0].size.y = -1; }},
+          {"a chart beyond the set", [](ChartSet& set) { set.triangle_chart[1] = 1000000; }},
+          {"a flipped triangle beyond the set",
+           [](ChartSet& set) { set.flipped_triangles.push_back(1000000); }}};
 }
 
 // Breaks what only calls read that need the vertices of uvs.

@@ -8,6 +8,7 @@
 #include "libatlas/core/degrees.h"
 #include "libatlas/core/glm_bridge.h"
 #include "libatlas/core/hull.h"
+#include "libatlas/core/portable_math.h"
 
 namespace atlas {
 namespace {
@@ -26,7 +27,7 @@ struct ProjectedNormal : Vec2d {
 class ConeSplitter {
  public:
   ConeSplitter(const Topology& topology, double cone, Cells& cells)
-      : topology_(topology), least_(std::cos(std::max(0.0, cone - kMargin))), cells_(cells) {}
+      : topology_(topology), least_(portable::cos(std::max(0.0, cone - kMargin))), cells_(cells) {}
 
   // First separates the connected parts whose normals lie around the mean normal. What is left
   // becomes patches, each grown around the normal of its first triangle. The first part keeps the

@@ -10,6 +10,7 @@
 #include "libatlas/charts/cells/ring_queue.h"
 #include "libatlas/charts/cells/tips.h"
 #include "libatlas/core/degrees.h"
+#include "libatlas/core/sort_total.h"
 
 namespace atlas {
 namespace {
@@ -207,7 +208,7 @@ class Seeder {
     const auto begin = static_cast<std::uint32_t>(first_seed);
     std::vector<std::uint32_t> order(seeds_.size() - first_seed), number(order.size());
     std::iota(order.begin(), order.end(), begin);
-    std::sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
+    sort_total(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
       return std::pair(seeds_[a], a) > std::pair(seeds_[b], b);
     });
     const std::vector<std::uint32_t> old_seeds(seeds_.begin() + begin, seeds_.end());

@@ -4,6 +4,7 @@
 #include <unordered_set>
 
 #include "libatlas/core/glm_bridge.h"
+#include "libatlas/core/portable_math.h"
 
 namespace atlas {
 namespace {
@@ -92,7 +93,7 @@ double angle_defect(const Topology& topology, std::uint32_t start) {
     turn = glm::dvec2(turn.x * c - turn.y * s, turn.x * s + turn.y * c) / length;
     h = topology.opposite[previous_half_edge(h)];
   } while (h != kNoIndex && h != start);
-  return h == kNoIndex ? 0 : -std::atan2(turn.y, turn.x);
+  return h == kNoIndex ? 0 : -portable::atan2(turn.y, turn.x);
 }
 
 std::vector<std::uint32_t> find_tips(const Topology& topology) {

@@ -26,7 +26,8 @@ struct Visit {
   double distance;
   std::uint32_t uv, by;
   bool operator>(const Visit& o) const {
-    return distance != o.distance ? distance > o.distance : uv > o.uv;
+    if (distance != o.distance) return distance > o.distance;
+    return uv != o.uv ? uv > o.uv : by > o.by;
   }
 };
 

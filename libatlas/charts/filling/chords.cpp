@@ -6,6 +6,7 @@
 #include <queue>
 
 #include "libatlas/core/hull.h"
+#include "libatlas/core/sort_total.h"
 
 namespace atlas {
 namespace {
@@ -35,7 +36,7 @@ class ChordFinder {
       edges_.push_back({a, b, length});
       edges_.push_back({b, a, length});
     }
-    std::sort(edges_.begin(), edges_.end(), [](const Edge& e, const Edge& f) {
+    sort_total(edges_.begin(), edges_.end(), [](const Edge& e, const Edge& f) {
       return e.from != f.from       ? e.from < f.from
              : e.length != f.length ? e.length < f.length
                                     : e.to < f.to;
@@ -83,7 +84,7 @@ class ChordFinder {
   void sort_corners() {
     by_x_.resize(corners_.size());
     std::iota(by_x_.begin(), by_x_.end(), 0);
-    std::sort(by_x_.begin(), by_x_.end(), [&](std::uint32_t i, std::uint32_t j) {
+    sort_total(by_x_.begin(), by_x_.end(), [&](std::uint32_t i, std::uint32_t j) {
       const Vec2d &a = corner(i), &b = corner(j);
       return a.x != b.x ? a.x < b.x : a.y != b.y ? a.y < b.y : i < j;
     });

@@ -10,6 +10,8 @@
 #include "libatlas/charts/filling/chords.h"
 #include "libatlas/charts/filling/middle_cut.h"
 #include "libatlas/core/hull.h"
+#include "libatlas/core/portable_math.h"
+#include "libatlas/core/sort_total.h"
 #include "libatlas/param/mesh/halfedges.h"
 
 namespace atlas {
@@ -74,8 +76,8 @@ class LimbCutter {
     for (const auto& [pair, length] : seams()) seam += length;
     if (box - boxes() < price * seam) return result;
     for (Piece& piece : pieces_) result.push_back(std::move(piece.triangles));
-    std::sort(result.begin(), result.end(),
-              [](const Triangles& a, const Triangles& b) { return a.front() < b.front(); });
+    sort_total(result.begin(), result.end(),
+               [](const Triangles& a, const Triangles& b) { return a.front() < b.front(); });
     return result;
   }
 
@@ -279,7 +281,7 @@ class LimbCutter {
       if (o == kNoIndex) continue;
       const std::uint32_t p = piece_of_[h / 3], q = piece_of_[o / 3];
       const Vec2d &a = chart_.uvs[uv_at(h)], &b = chart_.uvs[uv_at(next_half_edge(h))];
-      if (p < q) lengths[{p, q}] += std::hypot(b.x - a.x, b.y - a.y);
+      if (p < q) lengths[{p, q}] += portable::hypot(b.x - a.x, b.y - a.y);
     }
     return lengths;
   }

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "libatlas/core/hull.h"
+#include "libatlas/core/portable_math.h"
 
 namespace atlas {
 namespace {
@@ -38,14 +39,14 @@ LineCutter::LineCutter(const FlatChart& chart, const param::HalfEdges& half_edge
     const bool inside = o != kNoIndex && place[o / 3] != kNoIndex;
     joined_[s] = inside ? 3 * place[o / 3] + o % 3 : kNoIndex;
     const Vec2d &a = chart.uvs[half_edges.from(h)], &b = chart.uvs[half_edges.to(h)];
-    length_[s] = static_cast<float>(std::hypot(b.x - a.x, b.y - a.y));
+    length_[s] = static_cast<float>(portable::hypot(b.x - a.x, b.y - a.y));
     longest_ = std::max<double>(longest_, length_[s]);
   }
   face(0);
 }
 
 void LineCutter::face(double angle) {
-  const double x = std::cos(angle), y = std::sin(angle);
+  const double x = portable::cos(angle), y = portable::sin(angle);
   for (std::uint32_t i = 0; i < triangles_.size(); ++i) {
     along_[i] = 0;
     for (const std::uint32_t v : chart_.corners[triangles_[i]]) {

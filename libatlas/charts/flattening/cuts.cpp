@@ -8,6 +8,8 @@
 
 #include "libatlas/charts/flattening/split.h"
 #include "libatlas/core/glm_bridge.h"
+#include "libatlas/core/portable_math.h"
+#include "libatlas/core/sort_total.h"
 
 namespace atlas {
 namespace {
@@ -69,7 +71,7 @@ class EdgePaths {
     do {
       const glm::dvec3 p = point(from(h)), a = point(from(next_half_edge(h))) - p,
                        b = point(from(previous_half_edge(h))) - p;
-      sum -= std::atan2(glm::length(glm::cross(a, b)), glm::dot(a, b));
+      sum -= portable::atan2(glm::length(glm::cross(a, b)), glm::dot(a, b));
       h = chart_.opposite[previous_half_edge(h)];
     } while (h != kNoIndex && h != out_[v]);
     return sum;
@@ -269,7 +271,7 @@ std::vector<std::uint32_t> choose_tips(const Topology& topology, const LocalChar
       around[v] += area(t);
     }
   }
-  std::sort(tips.begin(), tips.end(), [](const Tip& a, const Tip& b) {
+  sort_total(tips.begin(), tips.end(), [](const Tip& a, const Tip& b) {
     return a.defect != b.defect ? a.defect > b.defect : a.vertex < b.vertex;
   });
   std::vector<std::uint32_t> chosen;

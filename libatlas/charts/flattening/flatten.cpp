@@ -12,6 +12,7 @@
 #include "libatlas/core/clock.h"
 #include "libatlas/core/parallel.h"
 #include "libatlas/core/pool.h"
+#include "libatlas/core/sort_total.h"
 
 namespace atlas {
 namespace {
@@ -94,10 +95,10 @@ class Flattener {
     absorb_charts({input_, partition_, *scratch}, result.charts, context);
     relieve_charts(input_, partition_, result.charts, context);
     result.timing.absorb_cpu = watch.lap();
-    std::sort(result.charts.begin(), result.charts.end(),
-              [](const FlatChart& a, const FlatChart& b) {
-                return a.triangles.front() < b.triangles.front();
-              });
+    sort_total(result.charts.begin(), result.charts.end(),
+               [](const FlatChart& a, const FlatChart& b) {
+                 return a.triangles.front() < b.triangles.front();
+               });
     return result;
   }
 

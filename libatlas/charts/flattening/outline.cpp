@@ -69,8 +69,8 @@ std::size_t count_crossings(std::span<const Outline::Edge> a, std::span<const Ou
   std::vector<Swept> edges;
   add_near(a, box_around(b), 0, edges);
   add_near(b, box_around(a), 1, edges);
-  std::sort(edges.begin(), edges.end(),
-            [](const Swept& s, const Swept& t) { return s.box.low.x < t.box.low.x; });
+  std::stable_sort(edges.begin(), edges.end(),
+                   [](const Swept& s, const Swept& t) { return s.box.low.x < t.box.low.x; });
   std::array<std::vector<const Swept*>, 2> open;  // those that may reach further to the right
   std::size_t count = 0;
   for (const Swept& edge : edges) {

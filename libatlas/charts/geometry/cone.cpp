@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "libatlas/core/glm_bridge.h"
+#include "libatlas/core/portable_math.h"
 
 namespace atlas {
 namespace {
@@ -77,7 +78,7 @@ std::pair<glm::dvec3, double> farthest(std::size_t count, const Normal& normal,
 }
 
 double angle_between(const glm::dvec3& a, const glm::dvec3& b) {
-  return 2 * std::atan2(glm::length(a - b), glm::length(a + b));
+  return 2 * portable::atan2(glm::length(a - b), glm::length(a + b));
 }
 
 template <class Normal>

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "libatlas/core/portable_math.h"
 #include "libatlas/core/vec.h"
 
 namespace atlas {
@@ -28,7 +29,7 @@ inline double smallest_eigenvalue(const Moments& m) {
   const double det =
       a * (d * f - m[4] * m[4]) - m[1] * (m[1] * f - m[4] * m[2]) + m[2] * (m[1] * m[4] - d * m[2]);
   const double r = std::clamp(det / (2 * p * p * p), -1.0, 1.0);
-  return mean + 2 * p * std::cos(std::acos(r) / 3 + 2 * std::numbers::pi / 3);
+  return mean + 2 * p * portable::cos(portable::acos(r) / 3 + 2 * std::numbers::pi / 3);
 }
 
 }  // namespace atlas

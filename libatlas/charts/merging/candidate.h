@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <tuple>
 
 namespace atlas {
 
@@ -10,7 +11,8 @@ struct Candidate {
   std::uint32_t a, b, version_a, version_b;
   bool operator>(const Candidate& other) const {
     if (cost != other.cost) return cost > other.cost;
-    return a != other.a ? a > other.a : b > other.b;
+    return std::tie(a, b, version_a, version_b) >
+           std::tie(other.a, other.b, other.version_a, other.version_b);
   }
 };
 

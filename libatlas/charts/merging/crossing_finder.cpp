@@ -5,6 +5,7 @@
 
 #include "libatlas/charts/merging/fan_kernels.h"
 #include "libatlas/core/hull.h"
+#include "libatlas/core/portable_math.h"
 
 namespace atlas {
 namespace {
@@ -25,7 +26,7 @@ struct Segment {
 // Returns how far one of two crossing edges would have to move for them not to cross.
 double crossing_depth(const Segment& e, const Segment& f) {
   const auto nearest = [](const Segment& line, const Segment& ends) {
-    const double length = std::hypot(line.to.x - line.from.x, line.to.y - line.from.y);
+    const double length = portable::hypot(line.to.x - line.from.x, line.to.y - line.from.y);
     return std::min(std::abs(cross(line.from, line.to, ends.from)),
                     std::abs(cross(line.from, line.to, ends.to))) /
            length;

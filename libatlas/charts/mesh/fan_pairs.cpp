@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "libatlas/core/sort_total.h"
+
 namespace atlas {
 namespace {
 
@@ -46,7 +48,7 @@ void FanPairing::sort_into_layers(std::vector<FanFace>& faces) {
       faces[k].layer = rank < left ? rank : kCancelled + rank - left;
     }
   }
-  std::sort(faces.begin(), faces.end(), [](const FanFace& a, const FanFace& b) {
+  sort_total(faces.begin(), faces.end(), [](const FanFace& a, const FanFace& b) {
     if (a.layer != b.layer) return a.layer < b.layer;
     return a.third != b.third ? a.third < b.third : a.half_edge < b.half_edge;
   });

@@ -7,11 +7,12 @@
 #include "libatlas/charts/mesh/fan_pairs.h"
 #include "libatlas/core/glm_bridge.h"
 #include "libatlas/core/predicates.h"
+#include "libatlas/core/sort_total.h"
 
 namespace atlas {
 namespace {
 
-glm::dvec3 point(const Topology& topology, std::uint32_t corner) {
+glm::dvec3 corner_point(const Topology& topology, std::uint32_t corner) {
   return to_dvec(topology.points[topology.corner_vertex[corner]]);
 }
 
@@ -23,19 +24,15 @@ class Linker {
 
   void run() {
     sort_by_lower_vertex();
-    topology_.opposite.assign(topology_.corner_vertex.size(), kNoIndex);
     duplicate_.assign(topology_.triangle_count(), 0);
-    // The data for linking a half-edge may lie anywhere in memory. It is prefetched this many
-    // half-edges ahead.
-    constexpr std::size_t ahead = 64;
-    std::size_t asked = 0;
-    for (std::size_t v = 0; v + 1 < first_.size(); ++v) {
-      for (; asked < std::min(edges_.size(), first_[v + 1] + ahead); ++asked) {
-        __builtin_prefetch(topology_.corner_vertex.data() + edges_[asked].half_edge);
-        __builtin_prefetch(topology_.opposite.data() + edges_[asked].half_edge, 1);
-      }
-      link_bucket(edges_.data() + first_[v], edges_.data() + first_[v + 1]);
+    for (std::uint32_t h = 0; h < topology_.opposite.size(); ++h) {
+      const std::uint32_t o = topology_.opposite[h];
+      if (o == kNoIndex || o < h) continue;
+      topology_.opposite[h] = topology_.opposite[o] = kNoIndex;
+      if (!topology_.degenerate(h / 3) && !topology_.degenerate(o / 3)) link_pair(h, o);
     }
+    for (std::size_t v = 0; v + 1 < first_.size(); ++v)
+      link_bucket(edges_.data() + first_[v], edges_.data() + first_[v + 1]);
     link_lone_fins();
   }
 
@@ -58,6 +55,7 @@ class Linker {
     return topology_.corner_vertex[previous_half_edge(h)];
   }
 
+  // Sorts the half-edges that are not in pairs.
   void sort_by_lower_vertex() {
     const auto n = static_cast<std::uint32_t>(topology_.corner_vertex.size());
     first_.assign(topology_.points.size() + 2, 0);
@@ -65,6 +63,7 @@ class Linker {
       for (std::uint32_t t = 0; t < n / 3; ++t) {
         if (topology_.degenerate(t)) continue;
         for (std::uint32_t h = 3 * t; h < 3 * t + 3; ++h) {
+          if (topology_.opposite[h] != kNoIndex) continue;
           const std::uint32_t a = from(h), b = to(h);
           body(std::min(a, b), std::max(a, b), h);
         }
@@ -92,7 +91,7 @@ class Linker {
         *j = moved;
       }
     } else {
-      std::sort(begin, end, order);
+      sort_total(begin, end, order);
     }
     for (Edge *i = begin, *j = begin; i < end; i = j) {
       while (j < end && j->upper == i->upper) ++j;
@@ -135,7 +134,7 @@ class Linker {
       const std::uint32_t h = e->half_edge;
       fan_.push_back({h, third(h), from(h) < to(h), wing(h), to_dvec(topology_.normals[h / 3])});
     }
-    std::sort(fan_.begin(), fan_.end(), [](const FanFace& a, const FanFace& b) {
+    sort_total(fan_.begin(), fan_.end(), [](const FanFace& a, const FanFace& b) {
       return a.third != b.third ? a.third < b.third : a.half_edge < b.half_edge;
     });
     for (std::size_t i = 1; i < fan_.size(); ++i) {
@@ -192,8 +191,9 @@ class Linker {
   glm::dvec3 wing(std::uint32_t h) const {
     const std::uint32_t low = from(h) < to(h) ? h : next_half_edge(h);
     const std::uint32_t high = from(h) < to(h) ? next_half_edge(h) : h;
-    const glm::dvec3 a = point(topology_, low), edge = glm::normalize(point(topology_, high) - a);
-    const glm::dvec3 d = point(topology_, previous_half_edge(h)) - a;
+    const glm::dvec3 a = corner_point(topology_, low),
+                     edge = glm::normalize(corner_point(topology_, high) - a);
+    const glm::dvec3 d = corner_point(topology_, previous_half_edge(h)) - a;
     return glm::normalize(d - glm::dot(d, edge) * edge);
   }
 
@@ -232,7 +232,7 @@ class Linker {
   }
 
   double length(std::uint32_t h) const {
-    return glm::distance(point(topology_, h), point(topology_, next_half_edge(h))) /
+    return glm::distance(corner_point(topology_, h), corner_point(topology_, next_half_edge(h))) /
            topology_.scale;
   }
 
@@ -252,7 +252,7 @@ class Linker {
   const TopologyOptions& options_;
   Topology& topology_;
   std::vector<std::uint32_t> first_;
-  std::vector<Edge> edges_;
+  std::vector<Edge> edges_;  // that are not in pairs
   std::vector<std::uint8_t> duplicate_;
   std::vector<FanFace> fan_;
   std::vector<Fin> fins_;

@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "libatlas/core/glm_bridge.h"
+#include "libatlas/core/portable_math.h"
 
 namespace atlas {
 namespace {
@@ -15,7 +16,7 @@ namespace {
 // degrees at most edges. Rough meshes of few triangles, with noise or not, also come out in fewer
 // charts when they count as noisy.
 constexpr double kFoldCosine = 0.988, kFoldShare = 0.6;
-constexpr std::size_t kManyTriangles = 800;
+constexpr std::size_t kManyNoisyTriangles = 800;
 constexpr int kRounds = 4;
 
 std::vector<std::uint8_t> noisy_pieces(const Topology& topology) {
@@ -34,7 +35,7 @@ std::vector<std::uint8_t> noisy_pieces(const Topology& topology) {
   std::vector<std::uint8_t> noisy(counts.size());
   for (std::size_t i = 0; i < counts.size(); ++i) {
     noisy[i] = counts[i].folds > kFoldShare * counts[i].edges &&
-               2 * std::size_t{counts[i].edges} > 3 * kManyTriangles / 2;
+               2 * std::size_t{counts[i].edges} > 3 * kManyNoisyTriangles / 2;
   }
   return noisy;
 }
@@ -60,13 +61,13 @@ double angle(const Topology& topology, std::uint32_t half_edge) {
   const glm::dvec3 from = point(half_edge);
   const glm::dvec3 a = point(next_half_edge(half_edge)) - from,
                    b = point(previous_half_edge(half_edge)) - from;
-  return std::atan2(glm::length(glm::cross(a, b)), glm::dot(a, b));
+  return portable::atan2(glm::length(glm::cross(a, b)), glm::dot(a, b));
 }
 
 }  // namespace
 
 void calm_noise(Topology& topology, const Context& context) {
-  if (topology.triangle_count() < kManyTriangles) return;
+  if (topology.triangle_count() < kManyNoisyTriangles) return;
   const std::vector<std::uint8_t> noisy = noisy_pieces(topology);
   if (std::find(noisy.begin(), noisy.end(), 1) == noisy.end()) return;
   std::vector<Vec3f> now = topology.normals, next = now;

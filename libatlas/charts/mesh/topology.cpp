@@ -8,8 +8,9 @@
 
 #include "libatlas/charts/mesh/links.h"
 #include "libatlas/charts/mesh/noise.h"
+#include "libatlas/charts/mesh/pair_links.h"
 #include "libatlas/charts/mesh/thin.h"
-#include "libatlas/charts/mesh/weld.h"
+#include "libatlas/charts/mesh/welded_mesh.h"
 #include "libatlas/core/clock.h"
 #include "libatlas/core/glm_bridge.h"
 #include "libatlas/core/is_finite.h"
@@ -24,7 +25,7 @@ constexpr double kDegenerateShare = 1e-12;
 
 // Data at random places in memory is prefetched this many triangles ahead. The orders of meshes
 // differ, and waiting would take most of the time.
-constexpr std::size_t kAhead = 20;
+constexpr std::size_t kCornersAhead = 20;
 
 Status check_input(const MeshView& mesh) {
   const std::size_t n = mesh.indices.size();
@@ -50,6 +51,9 @@ Status check_input(const MeshView& mesh) {
   }
   if (!mesh.seams.empty() && mesh.seams.size() != n) {
     return {ErrorCode::bad_input, "mesh: seams must be empty or 3 a triangle"};
+  }
+  if (!mesh.objects.empty() && mesh.objects.size() != mesh.positions.size()) {
+    return {ErrorCode::bad_input, "mesh: objects must be empty or 1 a position"};
   }
   if (!mesh.density.empty() && mesh.density.size() != n / 3) {
     return {ErrorCode::bad_input, "mesh: densities must be empty or 1 a triangle"};
@@ -81,7 +85,8 @@ void take_vertices(const MeshView& mesh, WeldedVertices welded, Topology& topolo
   topology.source_vertex = std::move(welded.source);
   topology.corner_vertex.resize(mesh.indices.size());
   for (std::size_t i = 0; i < mesh.indices.size(); ++i) {
-    topology.corner_vertex[i] = welded.place[mesh.indices[i]];
+    const std::uint32_t v = mesh.indices[i];
+    topology.corner_vertex[i] = welded.place.empty() ? v : welded.place[v];
   }
   // In double, since the scale of a mesh of denormal numbers is beyond float.
   const double scale = topology.scale;
@@ -280,8 +285,8 @@ void count_nonmanifold_vertices(Topology& topology) {
     valence[topology.corner_vertex[h]] += !topology.degenerate(h / 3);
   }
   for (std::uint32_t start = 0; start < corners; ++start) {
-    if (start + 3 * kAhead < corners) {
-      const std::uint32_t later = start + 3 * kAhead, across = topology.opposite[later];
+    if (start + 3 * kCornersAhead < corners) {
+      const std::uint32_t later = start + 3 * kCornersAhead, across = topology.opposite[later];
       __builtin_prefetch(valence.data() + topology.corner_vertex[later], 1);
       if (across != kNoIndex) __builtin_prefetch(topology.opposite.data() + across);
     }
@@ -305,15 +310,29 @@ void count_nonmanifold_vertices(Topology& topology) {
 
 }  // namespace
 
+Result<WeldedVertices> weld_mesh(const MeshView& mesh) {
+  if (Status status = check_input(mesh); !status.ok()) return status;
+  const std::vector<std::uint8_t> used = used_vertices(mesh.indices, mesh.positions.size());
+  if (Status status = check_positions(mesh, used); !status.ok()) return status;
+  return weld_vertices(mesh.positions, used, mesh.objects);
+}
+
 Result<Topology> build_topology(const MeshView& mesh, const TopologyOptions& options,
                                 const Context& context) {
-  if (Status status = check_input(mesh); !status.ok()) return status;
+  Result<WeldedVertices> welded = weld_mesh(mesh);
+  if (!welded.ok()) return welded.status();
+  std::vector<std::uint32_t> corners(mesh.indices.size());
+  for (std::size_t i = 0; i < corners.size(); ++i) corners[i] = welded->place[mesh.indices[i]];
+  std::vector<std::uint32_t> opposite = pair_links(corners, welded->points.size());
+  return build_topology({mesh, std::move(*welded), std::move(opposite)}, options, context);
+}
+
+Result<Topology> build_topology(WeldedMesh welded, const TopologyOptions& options,
+                                const Context& context) {
+  const MeshView& mesh = welded.mesh;
   Topology topology;
-  {
-    const std::vector<std::uint8_t> used = used_vertices(mesh.indices, mesh.positions.size());
-    if (Status status = check_positions(mesh, used); !status.ok()) return status;
-    take_vertices(mesh, weld_vertices(mesh.positions, used), topology);
-  }
+  take_vertices(mesh, std::move(welded.vertices), topology);
+  topology.opposite = std::move(welded.opposite);
   // Given charts are kept whatever the normals are.
   std::vector<std::uint32_t> thin = measure_triangles(topology, !options.cut_at_uv_seams);
   if (context.cancelled()) return Status::cancelled();

@@ -29,7 +29,8 @@ std::vector<std::uint8_t> used_vertices(std::span<const std::uint32_t> indices, 
   return used;
 }
 
-WeldedVertices weld_vertices(std::span<const Vec3f> positions, std::span<const std::uint8_t> used) {
+WeldedVertices weld_vertices(std::span<const Vec3f> positions, std::span<const std::uint8_t> used,
+                             std::span<const std::uint32_t> objects) {
   WeldedVertices welded;
   welded.scale = unit_scale(positions, used);
   const double size = 1 / welded.scale;
@@ -40,8 +41,12 @@ WeldedVertices weld_vertices(std::span<const Vec3f> positions, std::span<const s
     if (!used[v]) continue;
     const Vec3f& at = positions[v];
     const Vec3f p{drop_rounding(at.x, size), drop_rounding(at.y, size), drop_rounding(at.z, size)};
-    std::uint32_t& point = first.find(hash_words<3>({word_of(p.x), word_of(p.y), word_of(p.z)}),
-                                      [&](std::uint32_t i) { return welded.points[i] == p; });
+    const std::uint32_t object = objects.empty() ? 0 : objects[v];
+    const auto same = [&](std::uint32_t i) {
+      return welded.points[i] == p && (objects.empty() || objects[welded.source[i]] == object);
+    };
+    std::uint32_t& point =
+        first.find(hash_words<4>({word_of(p.x), word_of(p.y), word_of(p.z), object}), same);
     if (point == kNoIndex) {
       point = static_cast<std::uint32_t>(welded.source.size());
       welded.source.push_back(v);

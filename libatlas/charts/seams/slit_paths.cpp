@@ -9,6 +9,7 @@
 #include "libatlas/charts/seams/band_paths.h"
 #include "libatlas/core/degrees.h"
 #include "libatlas/core/glm_bridge.h"
+#include "libatlas/core/portable_math.h"
 
 namespace atlas {
 namespace {
@@ -316,7 +317,7 @@ class Slits::Straightener {
       c += length * glm::dot(to_dvec(wanted[0]), to_dvec(own[0]));
       s += length * glm::dot(to_dvec(wanted[1]), to_dvec(own[0]));
     }
-    const double norm = std::hypot(c, s);
+    const double norm = portable::hypot(c, s);
     if (!(norm > 0)) return;
     for (const std::uint32_t t : lune) {
       const Frames::Frame f = frames_.at(topology_, t);

@@ -5,6 +5,7 @@
 #include <utility>
 #include <vector>
 
+#include "libatlas/core/portable_math.h"
 #include "libatlas/core/progress.h"
 #include "libatlas/pack/fitting/fit_factors.h"
 #include "libatlas/pack/fitting/fit_many.h"
@@ -122,7 +123,7 @@ class PageSearch {
       const FitPlacement& p = fit.placements[i];
       const Vec2d box = box_of(charts_.outlines[i], 0), low = low_corner_of(charts_.outlines[i]);
       const Vec2d center{low.x + box.x / 2, low.y + box.y / 2};
-      const double c = p.scale * std::cos(p.angle), s = p.scale * std::sin(p.angle);
+      const double c = p.scale * portable::cos(p.angle), s = p.scale * portable::sin(p.angle);
       const Vec2d origin{p.offset.x + c * center.x - s * center.y,
                          p.offset.y + s * center.x + c * center.y};
       targets.push_back({origin, {-center.x, -center.y}, p.angle, false});

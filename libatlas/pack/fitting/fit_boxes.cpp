@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <utility>
 
 #include "libatlas/pack/fitting/box_fit.h"
@@ -73,7 +74,7 @@ void finish(const BoxFit& fit, const FitOptions& options, BoxLayout& layout, Fit
     out.content_width = fit.contents()[i].width;
     out.content_height = fit.contents()[i].height;
     out.rotated = at.rotated;
-    out.angle = at.rotated ? std::acos(0.0) : 0;
+    out.angle = at.rotated ? std::numbers::pi / 2 : 0;
     out.scale = result.scale;
     content += static_cast<double>(fit.contents()[i].area());
     if (!options.power_of_two) enclose(out.box, options, result.pages[at.page]);

@@ -10,6 +10,8 @@
 #include <queue>
 #include <utility>
 
+#include "libatlas/core/portable_math.h"
+
 namespace atlas::pack {
 
 bool searches_skip_rows(std::size_t pieces) {
@@ -87,7 +89,7 @@ class LastPlaces {
   static constexpr int kSteps = 64;  // a quarter of an octave each, up to 2^16 cells
 
   static int step(std::int32_t cells) {
-    return std::min(kSteps - 1, static_cast<int>(4 * std::log2(double(std::max(1, cells)))));
+    return std::min(kSteps - 1, static_cast<int>(4 * portable::log2(double(std::max(1, cells)))));
   }
   static int class_of(const Mask& mask) { return kSteps * step(mask.width) + step(mask.height); }
 

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "libatlas/core/clock.h"
+#include "libatlas/core/portable_math.h"
 #include "libatlas/core/random.h"
 #include "libatlas/pack/nesting/nest.h"
 
@@ -138,7 +139,8 @@ struct NestSearch::State {
     const double temperature = std::max(1e-9, 0.004 * best_energy * left * left);
     // This is Metropolis' rule, but the random number is drawn first, so that a layout can be given
     // up as soon as it is too high.
-    const double most = current_energy - temperature * std::log(std::max(1e-300, moves.unit()));
+    const double most =
+        current_energy - temperature * portable::log(std::max(1e-300, moves.unit()));
     next.plan.most_height = most;
     const double e = evaluate(next);
     if (e < best_energy) {

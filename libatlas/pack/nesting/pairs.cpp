@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "libatlas/core/hull.h"
+#include "libatlas/core/portable_math.h"
 
 namespace atlas::pack {
 namespace {
@@ -101,7 +102,7 @@ class Joiner {
     ChartPair pair;
     pair.first = a.chart;
     pair.second = b.chart;
-    pair.turn = std::atan2(-da.y, -da.x) - std::atan2(db.y, db.x);
+    pair.turn = portable::atan2(-da.y, -da.x) - portable::atan2(db.y, db.x);
     pair.end_of_first = end == 0 ? a0 : a1;
     pair.end_of_second = end == 0 ? b1 : b0;
     pair.normal = {da.y / ea.length, -da.x / ea.length};
@@ -110,7 +111,7 @@ class Joiner {
 
   double box_of_pair(const Hull& a, const Hull& b, const ChartPair& pair) {
     points_.assign(a.corners.begin(), a.corners.end());
-    const double c = std::cos(pair.turn), s = std::sin(pair.turn);
+    const double c = portable::cos(pair.turn), s = portable::sin(pair.turn);
     for (const Vec2d p : b.corners) {
       const Vec2d d = minus(p, pair.end_of_second);
       points_.push_back(plus(pair.end_of_first, {c * d.x - s * d.y, s * d.x + c * d.y}));
@@ -123,13 +124,13 @@ class Joiner {
 };
 
 Vec2d rotated(Vec2d p, double angle) {
-  const double c = std::cos(angle), s = std::sin(angle);
+  const double c = portable::cos(angle), s = portable::sin(angle);
   return {c * p.x - s * p.y, s * p.x + c * p.y};
 }
 
 ChartOutline turned(const ChartOutline& outline, double angle) {
   ChartOutline result = outline;
-  const double c = std::cos(angle), s = std::sin(angle);
+  const double c = portable::cos(angle), s = portable::sin(angle);
   const auto turn = [&](Vec2d& p) { p = {c * p.x - s * p.y, s * p.x + c * p.y}; };
   for (ChartOutline::Edge& e : result.edges) {
     turn(e.from);

@@ -8,6 +8,7 @@
 
 #include "libatlas/core/hull.h"
 #include "libatlas/core/parallel.h"
+#include "libatlas/core/portable_math.h"
 
 namespace atlas::pack {
 namespace {
@@ -16,7 +17,7 @@ namespace {
 constexpr std::size_t kFewest = 24, kMostGroups = 16;
 // The directions that are tried in half a turn, and the number of edges of the hull besides.
 constexpr int kDirections = 24;
-constexpr std::size_t kEdges = 6;
+constexpr std::size_t kRowEdges = 6;
 // Cells along a chart's largest extent while a plan is made.
 constexpr double kCells = 48;
 
@@ -125,11 +126,11 @@ std::vector<double> angles_for(const ChartOutline& outline, double& extent) {
     for (const Vec2d& p : hull) extent = std::max(extent, distance(a, p));
   }
   std::stable_sort(edges.begin(), edges.end(), [](const Vec2d& a, const Vec2d& b) {
-    return std::hypot(a.x, a.y) > std::hypot(b.x, b.y);
+    return portable::hypot(a.x, a.y) > portable::hypot(b.x, b.y);
   });
-  edges.resize(std::min(edges.size(), kEdges));
+  edges.resize(std::min(edges.size(), kRowEdges));
   for (const Vec2d& e : edges) {
-    const double angle = -std::atan2(e.y, e.x);
+    const double angle = -portable::atan2(e.y, e.x);
     angles.push_back(angle < 0 ? angle + std::numbers::pi : angle);
   }
   return angles;

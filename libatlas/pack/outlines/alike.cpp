@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "libatlas/core/hull.h"
+#include "libatlas/core/portable_math.h"
 
 namespace atlas::pack {
 namespace {
@@ -92,7 +93,7 @@ std::optional<double> turn_between(const Matching& m) {
     dot += p.x * q.x + p.y * q.y;
     cross += p.x * q.y - p.y * q.x;
   }
-  const double turn = std::atan2(cross, dot), c = std::cos(turn), s = std::sin(turn);
+  const double turn = portable::atan2(cross, dot), c = portable::cos(turn), s = portable::sin(turn);
   for (std::size_t i = 0; i < m.a.corners.size(); ++i) {
     const Vec2d p = m.b.corners[m.in_b(i)];
     const Vec2d turned{c * p.x - s * p.y, s * p.x + c * p.y};

@@ -6,6 +6,8 @@
 
 #include "libatlas/core/counting_sort.h"
 #include "libatlas/core/parallel.h"
+#include "libatlas/core/portable_math.h"
+#include "libatlas/core/sort_total.h"
 #include "libatlas/pack/outlines/covered_area.h"
 #include "libatlas/pack/outlines/shape_check.h"
 
@@ -20,7 +22,7 @@ double twice_area(const Vec2d& a, const Vec2d& b, const Vec2d& c) {
 std::vector<std::uint32_t> weld(std::span<const Vec2d> corners) {
   std::vector<std::uint32_t> order(corners.size()), number(corners.size());
   std::iota(order.begin(), order.end(), 0u);
-  std::sort(order.begin(), order.end(), [&](std::uint32_t i, std::uint32_t j) {
+  sort_total(order.begin(), order.end(), [&](std::uint32_t i, std::uint32_t j) {
     const Vec2d a = corners[i], b = corners[j];
     return a.x != b.x ? a.x < b.x : a.y != b.y ? a.y < b.y : i < j;
   });
@@ -55,7 +57,9 @@ class EdgeSum {
         });
     for (std::uint32_t low = 0; low < corners_; ++low) {
       const auto begin = halves.begin() + first[low], end = halves.begin() + first[low + 1];
-      std::sort(begin, end, [](const Half& a, const Half& b) { return a.high < b.high; });
+      sort_total(begin, end, [](const Half& a, const Half& b) {
+        return std::pair(a.high, a.sense) < std::pair(b.high, b.sense);
+      });
       for (auto h = begin; h != end;) {
         int sum = 0;
         const std::uint32_t high = h->high;
@@ -150,7 +154,7 @@ struct Bounds2 {
 
 Bounds2 bounds_of(const ChartOutline& outline, double angle) {
   if (outline.empty()) return {{}, {}};
-  const double c = std::cos(angle), s = std::sin(angle);
+  const double c = portable::cos(angle), s = portable::sin(angle);
   Bounds2 bounds;
   const auto reach = [&](Vec2d p) {
     const Vec2d q{c * p.x - s * p.y, s * p.x + c * p.y};
@@ -184,7 +188,7 @@ ChartOutline thinned(const ChartOutline& outline, double spacing) {
     const bool starts = k == 0 || !(outline.edges[k - 1].to == e.from);
     const bool ends = k + 1 == outline.edges.size() || !(outline.edges[k + 1].from == e.to);
     if (starts) from = e.from;
-    if (!ends && std::hypot(e.to.x - from.x, e.to.y - from.y) < spacing) continue;
+    if (!ends && portable::hypot(e.to.x - from.x, e.to.y - from.y) < spacing) continue;
     thin.edges.push_back({from, e.to});
     from = e.to;
   }

@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <utility>
+#include <tuple>
+
+#include "libatlas/core/sort_total.h"
 
 namespace atlas::pack {
 namespace {
@@ -57,8 +59,8 @@ class Lines {
   }
 
   void sweep() {
-    std::sort(crossings_.begin(), crossings_.end(), [](const Crossing& a, const Crossing& b) {
-      return std::pair(a.line, a.x) < std::pair(b.line, b.x);
+    sort_total(crossings_.begin(), crossings_.end(), [](const Crossing& a, const Crossing& b) {
+      return std::tie(a.line, a.x, a.change) < std::tie(b.line, b.x, b.change);
     });
     int depth = 0;
     for (std::size_t k = 0; k + 1 < crossings_.size(); ++k) {

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "libatlas/core/portable_math.h"
+
 namespace atlas::pack {
 namespace {
 
@@ -114,7 +116,7 @@ Vec2d DistanceField::onto_outline(Vec2d p) const {
   const double h = 0.5 / inverse_;
   if (!sample({p.x - h, p.y - h}, s) || !sample({p.x + h, p.y + h}, ahead)) return p;
   const Vec2d g{s.gradient.x + ahead.gradient.x, s.gradient.y + ahead.gradient.y};
-  const double length = std::hypot(g.x, g.y);
+  const double length = portable::hypot(g.x, g.y);
   if (length < 1e-9 || !sample(p, s)) return p;
   return {p.x - s.distance * g.x / length, p.y - s.distance * g.y / length};
 }

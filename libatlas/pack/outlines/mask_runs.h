@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "libatlas/core/counting_sort.h"
+#include "libatlas/core/sort_total.h"
 #include "libatlas/pack/outlines/outline_mask.h"
 
 namespace atlas::pack {
@@ -91,8 +92,9 @@ class RunSet {
     std::uint32_t from = 0;
     for (std::int32_t r = 0; r < mask.height; ++r) {
       const std::uint32_t to = mask.first[r + 1];
-      std::sort(runs.begin() + from, runs.begin() + to,
-                [](const Run& a, const Run& b) { return a.begin < b.begin; });
+      sort_total(runs.begin() + from, runs.begin() + to, [](const Run& a, const Run& b) {
+        return std::pair(a.begin, a.end) < std::pair(b.begin, b.end);
+      });
       const std::size_t start = mask.runs.size();
       mask.first[r] = static_cast<std::uint32_t>(start);
       for (; from < to; ++from) {
@@ -201,8 +203,10 @@ class Interior {
         [&](std::size_t i) { return static_cast<std::size_t>(crossings_[i].row - low); },
         [&](std::size_t i, std::uint32_t at) { sorted[at] = crossings_[i]; });
     for (std::size_t r = 0; r + 1 < first.size(); ++r)
-      std::sort(sorted.begin() + first[r], sorted.begin() + first[r + 1],
-                [](const Crossing& a, const Crossing& b) { return a.x < b.x; });
+      sort_total(sorted.begin() + first[r], sorted.begin() + first[r + 1],
+                 [](const Crossing& a, const Crossing& b) {
+                   return std::pair(a.x, a.sense) < std::pair(b.x, b.sense);
+                 });
     crossings_ = std::move(sorted);
   }
 

@@ -7,6 +7,7 @@
 #include <optional>
 #include <utility>
 
+#include "libatlas/core/portable_math.h"
 #include "libatlas/pack/outlines/mask_runs.h"
 
 namespace atlas::pack {
@@ -164,8 +165,8 @@ class EdgePen {
 }  // namespace
 
 Mask rasterize(const ChartOutline& outline, const RasterOptions& options, Vec2d& origin) {
-  const double c = options.factor * std::cos(options.angle);
-  const double s = options.factor * std::sin(options.angle);
+  const double c = options.factor * portable::cos(options.angle);
+  const double s = options.factor * portable::sin(options.angle);
   const auto turn = [&](Vec2d p) { return Vec2d{c * p.x - s * p.y, s * p.x + c * p.y}; };
   origin = {};
   if (outline.empty()) return {};

@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "libatlas/core/parallel.h"
+#include "libatlas/core/portable_math.h"
 #include "libatlas/core/random.h"
 #include "libatlas/pack/nesting/overlap_search.h"
 
@@ -59,8 +60,8 @@ constexpr int kTurns = 180;  // number of directions of a single chart within a 
 
 double goodness(const SqueezePage& page, const FitOptions& options) {
   if (!(page.width > 0)) return 0;
-  return 1 / (options.free_aspect ? page.width * page.height
-                                  : std::pow(std::max(page.width, page.height), 2));
+  const double longer = std::max(page.width, page.height);
+  return 1 / (options.free_aspect ? page.width * page.height : longer * longer);
 }
 
 PressStarts::PressStarts(std::span<const ChartOutline> outlines, const FitSearchOptions& options,
@@ -214,7 +215,7 @@ void PressStarts::draw_one(std::size_t i, int fine) {
   for (Vec2d& q : d.bodies[DrawnChart::fine].outline) q = {q.x + shift.x, q.y + shift.y};
   make_arcs(d.bodies[DrawnChart::fine]);
   d.bodies[DrawnChart::fine].center = d.bodies[DrawnChart::coarse].center;
-  d.bodies[DrawnChart::fine].radius += std::hypot(shift.x, shift.y);
+  d.bodies[DrawnChart::fine].radius += portable::hypot(shift.x, shift.y);
 }
 
 // Returns the width of start k's strip in cells. The widths are spread around the square page's
@@ -277,7 +278,7 @@ PressStart PressStarts::alone() const {
   const Vec2d m = d.center_of_shape();
   for (int k = 0; k < kTurns; ++k) {
     const double angle = 0.5 * std::numbers::pi * k / kTurns;
-    const double c = std::cos(angle), s = std::sin(angle), pad = options_.padding + 1;
+    const double c = portable::cos(angle), s = portable::sin(angle), pad = options_.padding + 1;
     Vec2d low{1e300, 1e300}, high{-1e300, -1e300};
     const auto reach = [&](Vec2d p) {
       const Vec2d q{scale_ * p.x - m.x, scale_ * p.y - m.y};
@@ -302,7 +303,7 @@ void PressStarts::put_down(const Nest& nest, PressStart& start) const {
     const NestPlace& at = nest.places[i];
     if (!at.placed) continue;
     const double angle = 2 * std::numbers::pi * at.direction / kDirections;
-    const double c = std::cos(angle), s = std::sin(angle);
+    const double c = portable::cos(angle), s = portable::sin(angle);
     const Vec2d o = pieces_[i].origins[at.direction], m = drawn_[i].center_of_shape();
     start.poses[i] = {{at.at.x * double(cell_) + o.x + c * m.x - s * m.y,
                        at.at.y * double(cell_) + o.y + s * m.x + c * m.y},

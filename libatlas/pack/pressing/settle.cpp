@@ -6,6 +6,7 @@
 #include <numeric>
 
 #include "libatlas/core/parallel.h"
+#include "libatlas/core/portable_math.h"
 #include "libatlas/pack/nesting/nudge.h"
 #include "libatlas/pack/nesting/slide.h"
 
@@ -44,7 +45,7 @@ class Settler {
 
   // Places the charts that have targets.
   bool place_at(double share, PressedPage& result) {
-    draw(share * scale_, std::pow(share, kCloser));
+    draw(share * scale_, portable::pow(share, kCloser));
     result.scale = share * scale_;
     result.places.assign(targets_.size(), {});
     displaced_.clear();
@@ -203,7 +204,7 @@ class Settler {
         raster.padding = options_.padding;
         raster.cell = options_.alignment;
         masks_[i] = rasterize(outlines_[i], raster, origins_[i]);
-        const double c = scale * std::cos(t.angle), s = scale * std::sin(t.angle);
+        const double c = scale * portable::cos(t.angle), s = scale * portable::sin(t.angle);
         wanted_[i] = {(t.origin.x * closer + c * t.from.x - s * t.from.y - origins_[i].x) /
                           options_.alignment,
                       (t.origin.y * closer + s * t.from.x + c * t.from.y - origins_[i].y) /
@@ -238,7 +239,7 @@ class Settler {
       for (std::int32_t dx = -kReach; dx <= kReach; ++dx) {
         const std::int32_t px = std::clamp(x + dx, 0, page.width() - masks_[i].width);
         const std::int32_t py = std::clamp(y + dy, 0, page.height() - masks_[i].height);
-        places[count++] = {std::hypot(px - wanted_[i].x, py - wanted_[i].y), {px, py}};
+        places[count++] = {portable::hypot(px - wanted_[i].x, py - wanted_[i].y), {px, py}};
       }
     std::stable_sort(places.begin(), places.end(),
                      [](const Nearby& a, const Nearby& b) { return a.distance < b.distance; });

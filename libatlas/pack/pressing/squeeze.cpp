@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "libatlas/core/portable_math.h"
+#include "libatlas/core/sort_total.h"
 #include "libatlas/pack/pressing/contacts.h"
 
 namespace atlas::pack {
@@ -47,7 +49,7 @@ class Solver {
 
  private:
   static void turn(Pose& pose, double by) {
-    const double c = std::cos(by), s = std::sin(by);
+    const double c = portable::cos(by), s = portable::sin(by);
     const double cosine = pose.cosine * c - pose.sine * s;
     pose.sine = pose.sine * c + pose.cosine * s;
     pose.cosine = cosine;
@@ -175,7 +177,7 @@ void sort_into_arcs(std::span<Vec2d> points) {
     high = {std::max(high.x, p.x), std::max(high.y, p.y)};
   }
   const bool wide = high.x - low.x > high.y - low.y;
-  std::sort(points.begin(), points.end(), [wide](Vec2d a, Vec2d b) {
+  sort_total(points.begin(), points.end(), [wide](Vec2d a, Vec2d b) {
     const Vec2d c = wide ? a : Vec2d{a.y, a.x}, d = wide ? b : Vec2d{b.y, b.x};
     return c.x != d.x ? c.x < d.x : c.y < d.y;
   });
@@ -199,7 +201,7 @@ void make_arcs(Body& body) {
       high = {std::max(high.x, p.x), std::max(high.y, p.y)};
     }
     body.arcs.push_back({{(low.x + high.x) / 2, (low.y + high.y) / 2},
-                         std::hypot(high.x - low.x, high.y - low.y) / 2});
+                         portable::hypot(high.x - low.x, high.y - low.y) / 2});
   }
 }
 
@@ -223,7 +225,7 @@ Body make_body(const Mask& mask, double cell, double reach, double spacing) {
   body.outline = body.field.outline(spacing);
   for (Vec2d& p : body.outline) {
     p = {p.x - body.center.x, p.y - body.center.y};
-    body.radius = std::max(body.radius, std::hypot(p.x, p.y));
+    body.radius = std::max(body.radius, portable::hypot(p.x, p.y));
   }
   make_arcs(body);
   return body;
@@ -268,7 +270,7 @@ SqueezePage squeeze(std::span<Body> bodies, SqueezePage page, const SqueezeOptio
   }
   for (std::size_t i = 0; i < bodies.size(); ++i) {
     bodies[i].at = kept[i].at;
-    bodies[i].angle = std::atan2(kept[i].sine, kept[i].cosine);
+    bodies[i].angle = portable::atan2(kept[i].sine, kept[i].cosine);
   }
   return page;
 }

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <array>
 
+#include "libatlas/core/sort_total.h"
 #include "libatlas/pack/rectangles/height_index.h"
 #include "libatlas/pack/rectangles/page_index.h"
 #include "libatlas/pack/rectangles/problem.h"
@@ -54,7 +55,7 @@ std::vector<std::uint32_t> sorted_items(std::span<const Extent> items, Order ord
   std::vector<Keyed> keyed(items.size());
   for (std::size_t i = 0; i < items.size(); ++i)
     keyed[i] = {sort_key(items[i], order), static_cast<std::uint32_t>(i)};
-  std::sort(keyed.begin(), keyed.end(), [](const Keyed& a, const Keyed& b) {
+  sort_total(keyed.begin(), keyed.end(), [](const Keyed& a, const Keyed& b) {
     return a.key != b.key ? a.key > b.key : a.id < b.id;
   });
   std::vector<std::uint32_t> ids(items.size());

@@ -4,6 +4,8 @@
 #include <iterator>
 #include <tuple>
 
+#include "libatlas/core/sort_total.h"
+
 namespace atlas::pack {
 namespace {
 
@@ -157,7 +159,7 @@ void FreeRects::place(const Rect& rect) {
 // With thousands of long thin items, all of which have pieces on one side, this takes O(n log n)
 // an item where comparing all pairs took O(n^2).
 void FreeRects::keep_maximal() {
-  std::sort(beside_.begin(), beside_.end(), [](const Beside& a, const Beside& b) {
+  sort_total(beside_.begin(), beside_.end(), [](const Beside& a, const Beside& b) {
     return std::tuple(a.side, a.start, a.low, -a.high, a.fresh) <
            std::tuple(b.side, b.start, b.low, -b.high, b.fresh);
   });
@@ -178,7 +180,7 @@ void FreeRects::keep_maximal() {
     front_.insert(front_.erase(first, last), {r.low, r.high});
     if (r.fresh) fresh_.push_back(r.rect);
   }
-  std::sort(fresh_.begin(), fresh_.end(), below_left);
+  sort_total(fresh_.begin(), fresh_.end(), below_left);
   const auto middle = static_cast<std::ptrdiff_t>(free_.size());
   free_.insert(free_.end(), fresh_.begin(), fresh_.end());
   std::inplace_merge(free_.begin(), free_.begin() + middle, free_.end(), below_left);

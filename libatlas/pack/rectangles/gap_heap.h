@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <queue>
+#include <tuple>
 #include <vector>
 
 #include "libatlas/pack/pack.h"
@@ -70,7 +71,7 @@ class GapHeap {
     std::int32_t y, x;
     std::uint32_t id;
     bool operator<(const Key& o) const {  // for a heap whose top is the smallest
-      return y != o.y ? y > o.y : x > o.x;
+      return std::tie(y, x, id) > std::tie(o.y, o.x, o.id);
     }
   };
   static constexpr std::uint32_t kEnd = UINT32_MAX;

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <bit>
 
+#include "libatlas/core/sort_total.h"
+
 namespace atlas::pack {
 namespace {
 
@@ -30,7 +32,7 @@ std::vector<RankedExtent> swapped(std::vector<RankedExtent> entries) {
 
 SizeTable::SizeTable(std::vector<RankedExtent> entries, std::size_t ranks)
     : place_(ranks), leaves_(std::bit_ceil(entries.size() + 1)), least_(2 * leaves_, kNoRank) {
-  std::sort(entries.begin(), entries.end(), [](const RankedExtent& a, const RankedExtent& b) {
+  sort_total(entries.begin(), entries.end(), [](const RankedExtent& a, const RankedExtent& b) {
     return a.size == b.size ? a.rank < b.rank : before(a.size, b.size);
   });
   sizes_.reserve(entries.size());
@@ -102,12 +104,12 @@ void FittingTree::build(std::size_t node, Range range, bool by_width) {
   }
   const std::size_t middle = (range.begin + range.end) / 2;
   if (range.begin < range.end)
-    std::nth_element(first, entries_.begin() + static_cast<std::ptrdiff_t>(middle), last,
-                     [&](const RankedExtent& a, const RankedExtent& b) {
-                       const std::int32_t p = by_width ? a.size.width : a.size.height;
-                       const std::int32_t q = by_width ? b.size.width : b.size.height;
-                       return p != q ? p < q : a.rank < b.rank;
-                     });
+    nth_total(first, entries_.begin() + static_cast<std::ptrdiff_t>(middle), last,
+              [&](const RankedExtent& a, const RankedExtent& b) {
+                const std::int32_t p = by_width ? a.size.width : a.size.height;
+                const std::int32_t q = by_width ? b.size.width : b.size.height;
+                return p != q ? p < q : a.rank < b.rank;
+              });
   build(2 * node, {range.begin, middle}, !by_width);
   build(2 * node + 1, {middle, range.end}, !by_width);
 }

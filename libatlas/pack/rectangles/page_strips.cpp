@@ -6,6 +6,7 @@
 #include <span>
 #include <utility>
 
+#include "libatlas/core/portable_math.h"
 #include "libatlas/pack/rectangles/cells.h"
 
 namespace atlas::pack {
@@ -122,10 +123,11 @@ std::vector<Strip> strips_of_all_widths(const Problem& problem, std::size_t coun
     const double widest = std::min<double>(direction.row, direction.most);
     const double ratio = std::max(1.0, widest / direction.least);
     for (std::size_t k = 0; k < steps; ++k)
-      add_within(direction,
-                 std::ceil(direction.least * std::pow(ratio, static_cast<double>(k) /
-                                                                 static_cast<double>(steps - 1))),
-                 strips);
+      add_within(
+          direction,
+          std::ceil(direction.least *
+                    portable::pow(ratio, static_cast<double>(k) / static_cast<double>(steps - 1))),
+          strips);
   }
   return strips;
 }

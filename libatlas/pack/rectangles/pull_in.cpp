@@ -6,6 +6,8 @@
 #include <utility>
 #include <vector>
 
+#include "libatlas/core/sort_total.h"
+
 namespace atlas::pack {
 namespace {
 
@@ -60,7 +62,7 @@ class PagePuller {
   // between an item and the edge has then been moved already, and not away from the edge, so no
   // item has to give way. Returns whether an item has moved.
   bool pull(std::int32_t Placement::*along, std::int32_t Placement::*across) {
-    std::sort(ids_.begin(), ids_.end(), [&](std::uint32_t a, std::uint32_t b) {
+    sort_total(ids_.begin(), ids_.end(), [&](std::uint32_t a, std::uint32_t b) {
       const Placement &p = layout_.placements[a], &q = layout_.placements[b];
       return std::pair(p.*along, a) < std::pair(q.*along, b);
     });

@@ -1,7 +1,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "libatlas/core/portable_math.h"
 #include "libatlas/core/random.h"
+#include "libatlas/core/sort_total.h"
 #include "libatlas/pack/rectangles/chains.h"
 #include "libatlas/pack/rectangles/gap_fill.h"
 #include "libatlas/pack/rectangles/turned_problem.h"
@@ -49,7 +51,7 @@ class PageChain {
     if (!sequence_.empty()) return;
     for (std::size_t p : chosen_) before += squared(pages_[p]);
     constexpr double temperature = 0.01;  // in units of a page's squared fill
-    if (after < before && random_.unit() >= std::exp((after - before) / temperature)) return;
+    if (after < before && random_.unit() >= portable::exp((after - before) / temperature)) return;
     replace();
     const auto now = cost_of(pages_);
     if (now < best_cost_) {
@@ -103,7 +105,7 @@ class PageChain {
                             : kind == 1 ? h * h
                             : kind == 2 ? std::max(w, h) * std::max(w, h)
                                         : (w + h) * (w + h);
-        keyed_.push_back({-std::log(size) + noise * (2 * random_.unit() - 1), g.item});
+        keyed_.push_back({-portable::log(size) + noise * (2 * random_.unit() - 1), g.item});
       }
     std::sort(keyed_.begin(), keyed_.end());
     sequence_.clear();
@@ -211,7 +213,7 @@ void fill_in(const Problem& problem, std::uint32_t allowed, std::vector<FilledPa
   std::vector<std::uint32_t> left;
   for (std::size_t p = allowed; p < pages.size(); ++p)
     for (const GapPlacement& g : pages[p].items) left.push_back(g.item);
-  std::sort(left.begin(), left.end(), [&](std::uint32_t a, std::uint32_t b) {
+  sort_total(left.begin(), left.end(), [&](std::uint32_t a, std::uint32_t b) {
     return std::pair(-problem.items[a].area(), a) < std::pair(-problem.items[b].area(), b);
   });
   for (std::uint32_t p = 0; p < allowed; ++p) {

@@ -8,6 +8,7 @@
 #include <unordered_set>
 
 #include "libatlas/core/random.h"
+#include "libatlas/core/sort_total.h"
 
 namespace atlas::pack {
 namespace {
@@ -245,10 +246,10 @@ std::vector<GapPlacement> StripBeam::pack(const Limits& limits) {
     // More children than needed are kept, because some turn out to be duplicates or to waste too
     // much.
     const std::size_t enough = std::min(children_.size(), 3 * states);
-    std::nth_element(children_.begin(), children_.begin() + static_cast<std::ptrdiff_t>(enough),
-                     children_.end(), before);
+    nth_total(children_.begin(), children_.begin() + static_cast<std::ptrdiff_t>(enough),
+              children_.end(), before);
     children_.resize(enough);
-    std::sort(children_.begin(), children_.end(), before);
+    sort_total(children_.begin(), children_.end(), before);
     next.clear();
     seen.clear();
     for (const Child& child : children_) {

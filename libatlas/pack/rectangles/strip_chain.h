@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "libatlas/core/portable_math.h"
 #include "libatlas/core/random.h"
 #include "libatlas/pack/rectangles/engines.h"
 #include "libatlas/pack/rectangles/gap_fill.h"
@@ -50,7 +51,7 @@ class StripChain {
     const std::int64_t height = evaluate(candidate_);
     cool_down();
     const double rise = static_cast<double>(height - current_height_);
-    if (rise <= 0 || random_.unit() < std::exp(-rise / temperature_)) {
+    if (rise <= 0 || random_.unit() < portable::exp(-rise / temperature_)) {
       current_ = candidate_;
       current_height_ = height;
     }

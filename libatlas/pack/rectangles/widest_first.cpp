@@ -2,6 +2,7 @@
 #include <array>
 #include <bit>
 
+#include "libatlas/core/sort_total.h"
 #include "libatlas/pack/rectangles/engines.h"
 #include "libatlas/pack/rectangles/gap_heap.h"
 
@@ -18,7 +19,7 @@ class WidestFit {
       if (problem.allow_rotation && e.width != e.height)
         entries_.push_back({{e.height, e.width}, i, true});
     }
-    std::sort(entries_.begin(), entries_.end(), [](const Entry& a, const Entry& b) {
+    sort_total(entries_.begin(), entries_.end(), [](const Entry& a, const Entry& b) {
       if (a.size.width != b.size.width) return a.size.width < b.size.width;
       if (a.size.height != b.size.height) return a.size.height < b.size.height;
       return a.item != b.item ? a.item > b.item : a.rotated > b.rotated;

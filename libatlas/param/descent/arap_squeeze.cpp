@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "libatlas/core/glm_bridge.h"
+#include "libatlas/core/portable_math.h"
 #include "libatlas/param/descent/arap_solver.h"
 #include "libatlas/param/mesh/percentile.h"
 
@@ -76,7 +77,7 @@ double ArapSolver::update_stretch(std::span<const Vec2d> uvs, bool ratio) {
   for (std::size_t t = 0; t < w_.elements.size(); ++t) {
     const SingularValues s = w_.sigma[t];
     const double r = s.small > 0 ? std::max(s.large * scale, 1 / (s.small * scale)) : worst;
-    w_.stretch[t] = std::log(std::clamp(r, 1.0, worst));
+    w_.stretch[t] = portable::log(std::clamp(r, 1.0, worst));
     w_.tail.push_back({w_.stretch[t], w_.elements[t].area()});
   }
   return upper_percentile(w_.tail, 0.001);
@@ -101,8 +102,8 @@ void ArapSolver::weight_by_stretch(double largest, double least) {
   for (std::size_t t = 0; t < w_.elements.size(); ++t) {
     // The worst 0.1 % may stay as it is: more weight on it would only spoil the rest.
     const double r = std::clamp(w_.stretch[t] / largest, 0.05, 1.0);
-    const double weight = std::exp((1 - damping) * std::log(w_.elements[t].weight) +
-                                   damping * (power - 2) * std::log(r));
+    const double weight = portable::exp((1 - damping) * portable::log(w_.elements[t].weight) +
+                                        damping * (power - 2) * portable::log(r));
     w_.elements.set_weight(t, static_cast<float>(std::max(least, weight)));
   }
   weighted_ = true;
@@ -110,7 +111,7 @@ void ArapSolver::weight_by_stretch(double largest, double least) {
 
 void ArapSolver::squeeze(const Squeeze& options, std::span<Vec2d> uvs) {
   wake(uvs);
-  const double log_goal = std::log(options.goal), log_bound = std::log(options.bound);
+  const double log_goal = portable::log(options.goal), log_bound = portable::log(options.bound);
   const bool foresees = mesh_.triangles.size() >= many_triangles && !options.ratio;
   const bool chooses = !options.rough && uvs.size() < large_mesh;  // there is memory for more
                                                                    // states

@@ -5,6 +5,8 @@
 #include <cstddef>
 #include <vector>
 
+#include "libatlas/core/sort_total.h"
+
 namespace atlas::param {
 
 struct WeightedValue {
@@ -23,17 +25,14 @@ inline double value_above_budget(std::vector<WeightedValue>& values, double budg
   for (std::size_t tail = values.size() / 256 + 16;; tail *= 4) {
     tail = std::min(tail, values.size());
     const auto end = values.begin() + static_cast<std::ptrdiff_t>(tail);
-    if (tail < values.size()) std::nth_element(values.begin(), end, values.end(), larger);
+    if (tail < values.size()) nth_total(values.begin(), end, values.end(), larger);
+    sort_total(values.begin(), end, larger);
     double weight = 0;
-    for (auto v = values.begin(); v != end; ++v) weight += v->weight;
-    if (weight <= budget && tail < values.size()) continue;
-    std::sort(values.begin(), end, larger);
-    weight = 0;
     for (auto v = values.begin(); v != end; ++v) {
       weight += v->weight;
       if (weight > budget) return v->value;
     }
-    return (end - 1)->value;
+    if (tail == values.size()) return (end - 1)->value;
   }
 }
 
@@ -59,7 +58,7 @@ class UpperTail {
 
  private:
   void prune() {
-    std::sort(values_.begin(), values_.end(), larger);
+    sort_total(values_.begin(), values_.end(), larger);
     double weight = 0;
     std::size_t kept = 0;
     while (kept < values_.size() && weight <= budget_) weight += values_[kept++].weight;

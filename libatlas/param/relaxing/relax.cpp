@@ -6,6 +6,8 @@
 #include <numeric>
 #include <utility>
 
+#include "libatlas/core/sort_total.h"
+
 namespace atlas::param {
 
 namespace {
@@ -279,7 +281,7 @@ void Relaxer::spare_worst(double bound, std::vector<std::uint32_t> tail) {
   spared_.assign(elements_.size(), 0);
   double budget = 0;
   for (std::size_t t = 0; t < elements_.size(); ++t) budget += share * elements_[t].area();
-  std::sort(tail.begin(), tail.end(), [&](std::uint32_t a, std::uint32_t b) {
+  sort_total(tail.begin(), tail.end(), [&](std::uint32_t a, std::uint32_t b) {
     return stretch_[a] != stretch_[b] ? stretch_[a] > stretch_[b] : a < b;
   });
   for (const std::uint32_t t : tail) {

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "libatlas/core/portable_math.h"
 #include "libatlas/param/repair/separate.h"
 
 namespace atlas::param {
@@ -55,7 +56,7 @@ double Separator::corner_angle(std::uint32_t vertex, std::span<const Vec2d> uvs)
     const std::uint32_t k = corners_->corner[i] % 3;
     const glm::dvec2 p = to_glm(uvs[vertex]);
     const glm::dvec2 a = to_glm(uvs[v[(k + 1) % 3]]) - p, b = to_glm(uvs[v[(k + 2) % 3]]) - p;
-    sum += std::atan2(cross(a, b), glm::dot(a, b));
+    sum += portable::atan2(cross(a, b), glm::dot(a, b));
   }
   return sum;
 }

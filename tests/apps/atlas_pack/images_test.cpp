@@ -106,6 +106,11 @@ TEST_F(AtlasPack, APageThatStaysMostlyEmptyIsNamedWithTheOptionThatCutsIt) {
   EXPECT_NE(run("images in -o out").output.find(words), std::string::npos);
   const RunResult cropped = run("images in -o out --crop");
   EXPECT_EQ(cropped.output.find("empty"), std::string::npos) << cropped.output;
+  ASSERT_TRUE(atlas::write_png(dir_ / "in/b.png", atlas::Image8(64, 64, 3, 7), {}).ok());
+  const RunResult several = run("images in -o out --page 64x64");
+  EXPECT_NE(several.output.find("out-1.png: 64 x 64 texels are mostly empty (--crop"),
+            std::string::npos)
+      << several.output;
 }
 
 // Starting from any page, the names lead to all others, and to no page twice.
@@ -155,6 +160,50 @@ TEST_F(AtlasPack, SpritesAreInTheOrderOfTheirNames) {
   std::vector<std::string> listed;
   for (const auto& frame : data["frames"]) listed.push_back(frame["filename"]);
   EXPECT_EQ(listed, std::vector<std::string>(names.begin(), names.end()));
+}
+
+// Writes an image of 4 x 4 texels of a colour that no other name has.
+void write_frames(const fs::path& folder, const std::vector<std::string>& names) {
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    fs::create_directories((folder / names[i]).parent_path());
+    ASSERT_TRUE(
+        atlas::write_png(folder / names[i], atlas::Image8(4, 4, 3, std::uint8_t(9 * i)), {}).ok());
+  }
+}
+
+TEST_F(AtlasPack, FramesComeInNaturalOrderAndAreAnimations) {
+  const std::vector<std::string> names{
+      "fall.png",   "run/1.png",    "run/2.png",   "run/12.png",  "walk_1.png",
+      "walk_2.png", "walk_010.png", "walk_10.png", "walk_11.png", "walk_123456789012345678901.png",
+      "wave 7.png"};
+  write_frames(dir_ / "in", {names.rbegin(), names.rend()});
+  for (const char* format : {"hash", "array"}) {
+    ASSERT_EQ(run(fmt::format("images in -o s --page 64 --data {}", format)).exit_code, 0);
+    const auto data = nlohmann::ordered_json::parse(read("s.json"));
+    std::vector<std::string> listed;
+    for (const auto& [key, frame] : data["frames"].items())
+      listed.push_back(frame.contains("filename") ? std::string(frame["filename"]) : key);
+    EXPECT_EQ(listed, names) << format;
+    const auto& animations = data["animations"];
+    EXPECT_EQ(animations.size(), 2u) << animations;
+    EXPECT_EQ(animations["run"], nlohmann::json({"run/1.png", "run/2.png", "run/12.png"}));
+    EXPECT_EQ(animations["walk"],
+              nlohmann::json(std::vector<std::string>(names.begin() + 4, names.begin() + 10)));
+  }
+}
+
+// The frames of an animation may lie on several pages; a loader finds them by their names.
+TEST_F(AtlasPack, EachPageListsAllAnimations) {
+  write_frames(dir_ / "in", {"a1.png", "a2.png", "a3.png", "b.png"});
+  ASSERT_EQ(run("images in -o s --page 4x4").exit_code, 0);
+  for (int page = 0; page < 4; ++page) {
+    const auto data = nlohmann::json::parse(read(fmt::format("s-{}.json", page)));
+    EXPECT_EQ(data["animations"], nlohmann::json({{"a", {"a1.png", "a2.png", "a3.png"}}}));
+  }
+  fs::remove(dir_ / "in/a2.png");
+  fs::remove(dir_ / "in/a3.png");
+  ASSERT_EQ(run("images in -o s --page 64").exit_code, 0);
+  EXPECT_FALSE(nlohmann::json::parse(read("s.json")).contains("animations"));
 }
 
 // The data of each page tell the size of its own image.
@@ -217,11 +266,16 @@ TEST_F(AtlasPack, TheNameOfAPageMayBeGivenWholeAndTheFilesAreNamed) {
       << several.output;
   const auto summary = nlohmann::json::parse(run("images in -o out --page 40x40 --json").output);
   EXPECT_EQ(summary["files"].size(), 6u);
-  const RunResult refused = run("images in -o sheet.jpg");
-  EXPECT_EQ(refused.exit_code, 2);
-  EXPECT_NE(refused.output.find("sheet.jpg: pages are PNG images (name them NAME or NAME.png)"),
-            std::string::npos)
-      << refused.output;
+  for (const char* name : {"sheet.jpg", "sheet.ktx2", "sheet.KTX2", "sheet.avif", "sheet.plist"}) {
+    const RunResult refused = run(fmt::format("images in -o {}", name));
+    EXPECT_EQ(refused.exit_code, 2) << name;
+    EXPECT_NE(refused.output.find(fmt::format("{}: pages are PNG images, and their data are JSON "
+                                              "(name them NAME, NAME.png or NAME.json)",
+                                              name)),
+              std::string::npos)
+        << refused.output;
+    EXPECT_FALSE(fs::exists(dir_ / fmt::format("{}.png", name)));
+  }
 }
 
 TEST_F(AtlasPack, NoSpriteIsWrittenOverThroughALink) {
@@ -245,6 +299,25 @@ TEST_F(AtlasPack, NoSpriteIsWrittenOverThroughALink) {
 }
 
 // Such a page once took 14 GB before anything was drawn.
+// A flat image of a few kilobytes is as large as its sides say, once it is decoded.
+TEST_F(AtlasPack, ImagesLargerThanThePageAreRefusedBeforeTheyAreDecoded) {
+  fs::create_directories(dir_ / "in");
+  ASSERT_TRUE(atlas::write_png(dir_ / "in/flat.png", atlas::Image8(6000, 5000, 1), {9}).ok());
+  EXPECT_LT(fs::file_size(dir_ / "in/flat.png"), 100'000u);
+  const RunResult r = run("images in -o sheet --page 256x256");
+  EXPECT_EQ(r.exit_code, 1) << r.output;
+  EXPECT_NE(r.output.find("in/flat.png: 6000 x 5000 texels are more than the page of 256 x 256"),
+            std::string::npos)
+      << r.output;
+  // What is trimmed may fit.
+  atlas::Image8 small(600, 500, 4);
+  small.at(300, 200)[3] = 255;
+  fs::remove(dir_ / "in/flat.png");
+  ASSERT_TRUE(atlas::write_png(dir_ / "in/small.png", small, {}).ok());
+  EXPECT_EQ(run("images in -o sheet --page 256x256").exit_code, 0);
+  EXPECT_NE(run("images in -o other --page 256x256 --no-trim").exit_code, 0);
+}
+
 TEST_F(AtlasPack, PagesThatNoMemoryHoldsAreRefused) {
   fs::create_directories(dir_ / "in");
   ASSERT_TRUE(atlas::write_png(dir_ / "in/a.png", atlas::Image8(8, 8, 3, 9), {}).ok());

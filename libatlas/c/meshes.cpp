@@ -1,0 +1,52 @@
+#include "libatlas/c/objects.h"
+#include "libatlas/c/structs.h"
+
+namespace atlas::c {
+namespace {
+
+StridedMesh strided_mesh(const libatlas_mesh& mesh) {
+  const std::size_t triangles = mesh.index_count / 3;
+  StridedMesh strided{.positions = {mesh.positions, mesh.position_count, mesh.position_stride},
+                      .indices = {mesh.indices, mesh.index_count, mesh.index_bytes},
+                      .texcoords = {mesh.texcoords, mesh.texcoord_count, mesh.texcoord_stride}};
+  if (mesh.normals) strided.normals = {mesh.normals, mesh.position_count, mesh.normal_stride};
+  if (mesh.texcoord_indices)
+    strided.texcoord_indices = {mesh.texcoord_indices, mesh.index_count, mesh.index_bytes};
+  if (mesh.materials) strided.materials = {mesh.materials, triangles};
+  if (mesh.seams) strided.seams = {mesh.seams, mesh.index_count};
+  if (mesh.triangle_density) strided.density = {mesh.triangle_density, triangles};
+  return strided;
+}
+
+}  // namespace
+}  // namespace atlas::c
+
+libatlas_status libatlas_mesh_init(libatlas_mesh* mesh, size_t size) {
+  libatlas_mesh defaults{};
+  defaults.index_bytes = 4;
+  defaults.density = 1;
+  return atlas::c::set_defaults(mesh, size, defaults);
+}
+
+libatlas_status libatlas_atlas_create(libatlas_context* context, libatlas_atlas** atlas) {
+  using Made = atlas::Result<std::unique_ptr<libatlas_atlas>>;
+  return atlas::c::run_making_call(context, atlas,
+                                   [] { return Made(std::make_unique<libatlas_atlas>()); });
+}
+
+void libatlas_atlas_destroy(libatlas_atlas* atlas) {
+  delete atlas;
+}
+
+libatlas_status libatlas_add_mesh(libatlas_context* context, libatlas_atlas* atlas,
+                                  const libatlas_mesh* mesh, uint32_t* number) {
+  if (number) *number = 0;
+  return atlas::c::run_call(context, [&]() -> atlas::Status {
+    if (!atlas) return atlas::c::null("atlas");
+    libatlas_mesh own;
+    if (auto s = atlas::c::take_struct(mesh, "libatlas_mesh", own); !s.ok()) return s;
+    const auto added = atlas->atlas.add(atlas::c::strided_mesh(own), own.density);
+    if (added.ok() && number) *number = *added;
+    return added.status();
+  });
+}

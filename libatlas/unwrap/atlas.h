@@ -1,0 +1,103 @@
+// Unwraps several meshes onto one atlas; each gets vertices to draw with of its own.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "libatlas/unwrap/strided.h"
+#include "libatlas/unwrap/unwrap.h"
+
+namespace atlas {
+
+// A triangle mesh as programs keep it to draw it: several attributes in one array, indices of 16
+// bits. Members that are not explained here are those of MeshView.
+struct StridedMesh {
+  StridedSpan<Vec3f> positions = {};
+  IndexSpan indices = {};  // 3 a triangle
+  // 1 a position, or none. Edges at which triangles that share them have different normals are
+  // seams then, as baked normal maps need them. Flat shading makes seams of all edges that bend.
+  StridedSpan<Vec3f> normals = {};
+  StridedSpan<Vec2f> texcoords = {};
+  IndexSpan texcoord_indices = {};
+  std::span<const std::uint32_t> materials = {};
+  std::span<const float> density = {};
+  std::span<const std::uint8_t> seams = {};
+  std::span<const std::uint32_t> objects = {};
+};
+
+// What Atlas::unwrap() returns.
+class UnwrappedAtlas {
+ public:
+  // Says of one mesh what UnwrappedMesh says, and triangle_chart. Pages and charts are those of the
+  // atlas. Refers to the UnwrappedAtlas.
+  struct Mesh {
+    std::span<const std::uint32_t> vertices = {};  // into the mesh's positions
+    std::span<const Vec2f> uvs = {};               // one per vertex
+    std::span<const std::uint32_t> indices = {};   // three per triangle, into vertices and uvs
+    std::span<const std::uint32_t> triangle_page = {}, triangle_chart = {};  // one per triangle
+  };
+
+  std::size_t mesh_count() const { return first_vertex_.size() - 1; }
+  Mesh mesh(std::size_t i) const;  // i: as Atlas::add() numbered them
+  std::size_t mesh_of_chart(std::size_t chart) const;
+
+  // All meshes: their pages, charts and placements, and what was measured. Triangles and vertices
+  // are numbered through, in the order of the meshes, except in `indices` and `vertices`, which are
+  // those of mesh(i), one mesh after the other.
+  const UnwrappedMesh& all() const { return all_; }
+
+ private:
+  friend class Atlas;
+  // `first_position`, `first_triangle`: one per mesh of `all`, and the ends.
+  UnwrappedAtlas(UnwrappedMesh all, std::span<const std::size_t> first_position,
+                 std::span<const std::size_t> first_triangle);
+
+  UnwrappedMesh all_;
+  std::vector<std::size_t> first_vertex_ = {}, first_triangle_ = {};  // one per mesh, and the ends
+};
+
+// Meshes that are to share an atlas. They keep their order, and are never joined to each other: a
+// chart holds triangles of one mesh only, also where meshes touch or lie on each other. Their
+// charts get the same texel density, times `density` of add() and MeshView::density.
+class Atlas {
+ public:
+  // Adds a copy of a mesh, whose arrays are not used afterwards. `density`: relative linear texel
+  // density of the whole mesh, finite and > 0. Returns its number; meshes are counted from 0.
+  // Errors: bad_input where there is no triangle; a stride, an index, a position or a density is
+  // not usable, or an array has the wrong length; unsupported where all meshes have 2^30 triangles
+  // or 2^32 positions. The message names mesh and triangle, and the atlas is as it was.
+  Result<std::uint32_t> add(const StridedMesh& mesh, float density = 1);
+  Result<std::uint32_t> add(const MeshView& mesh, float density = 1);
+
+  std::size_t mesh_count() const { return first_triangle_.size() - 1; }
+
+  // Unwraps the meshes as unwrap_mesh() would one mesh that consists of them, and may be called
+  // again, with other options. Texcoords are used for ChartOptions::keep_uv_charts; meshes without
+  // them get charts then, too. Errors: those of unwrap_mesh(); bad_input where there is no mesh.
+  Result<UnwrappedAtlas> unwrap(const UnwrapOptions& options, const Context& context) const;
+
+  // Returns the seams of a mesh, in the form of MeshView::seams: 1 where another triangle has the
+  // same edge in space, but not in uv. `unwrapped` is what unwrap() returned for these meshes. The
+  // borders of the surface are no seams. Errors: bad_input (other meshes, or no such mesh).
+  Result<std::vector<std::uint8_t>> seams(const UnwrappedAtlas& unwrapped, std::size_t mesh) const;
+
+ private:
+  void append(const StridedMesh& mesh, float density);
+  std::uint32_t append_positions(const StridedMesh& mesh);
+  void append_seams(const StridedMesh& mesh);
+  void append_texcoords(const StridedMesh& mesh);
+  void cut_to_meshes();
+
+  std::vector<std::size_t> first_position_{0}, first_triangle_{0};  // one per mesh, and the ends
+  // Arrays of MeshView, which stay empty until a mesh has one.
+  std::vector<Vec3f> positions_ = {};
+  std::vector<std::uint32_t> indices_ = {}, materials_ = {}, texcoord_indices_ = {}, objects_ = {};
+  std::vector<float> density_ = {};
+  std::vector<Vec2f> texcoords_ = {};
+  std::vector<std::uint8_t> seams_ = {};
+  std::uint32_t object_count_ = 0;
+};
+
+}  // namespace atlas

@@ -1,0 +1,20 @@
+# Run by ctest with NM, LIBRARY and HEADER: the library exports each function that the header declares,
+# and no other symbol.
+cmake_minimum_required(VERSION 3.22)
+execute_process(COMMAND ${NM} -D --defined-only ${LIBRARY}
+                RESULT_VARIABLE result OUTPUT_VARIABLE symbols ERROR_VARIABLE errors)
+if(NOT result EQUAL 0)
+  message(FATAL_ERROR "${NM} ${LIBRARY} failed (${result}):\n${errors}")
+endif()
+string(REGEX MATCHALL "[^ \n]+\n" exported "${symbols}")
+string(REPLACE "\n" "" exported "${exported}")
+file(READ ${HEADER} text)
+string(REGEX MATCHALL "LIBATLAS_API [^(;]*\\(" declared "${text}")
+list(TRANSFORM declared REPLACE "^.*[ *]([a-z_]+)\\($" "\\1")
+list(FILTER declared INCLUDE REGEX "^libatlas_")
+list(SORT exported)
+list(SORT declared)
+list(LENGTH declared count)
+if(count LESS 20 OR NOT exported STREQUAL declared)
+  message(FATAL_ERROR "exported:\n${exported}\ndeclared:\n${declared}")
+endif()
