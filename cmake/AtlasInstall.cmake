@@ -1,47 +1,73 @@
-# The installed package: one library out of all folders, the public headers, a CMake package and a
-# pkg-config file. The ATLAS BLAS owns the name libatlas.so on many systems, so the files are called
-# libatlasgeo; the package is libatlas.
+# The installed package: a library for each component, the public headers, a CMake package and files for
+# pkg-config. The ATLAS BLAS owns the name libatlas.so on many systems, so the files are called
+# libatlasgeo_COMPONENT; the package is libatlas.
 
-# How each third-party target that a folder names is linked by those who use the installed library.
-# OpenImageIO is not among them: the module that needs it is loaded when needed (libatlas/image).
-# Left out: what is headers only, and so ends at our own .cpp files.
-set(ATLAS_LINK_AS_TARGET TBB::tbb fmt::fmt ZLIB::ZLIB meshoptimizer::meshoptimizer glfw PkgConfig::EPOXY PkgConfig::EGL PkgConfig::IMGUI)
-set(ATLAS_HEADERS_ONLY glm::glm Eigen3::Eigen nlohmann_json::nlohmann_json atlas_options)
+# How each third-party target that a folder names is linked by those who use the installed libraries: by
+# pkg-config as a package, or with an option. OpenImageIO is not among them: the module that needs it is
+# loaded when needed (libatlas/image). Left out: what is headers only, and so ends at our own .cpp files.
+set(ATLAS_LINKED TBB::tbb=tbb fmt::fmt=fmt ZLIB::ZLIB=zlib PNG::PNG=libpng JPEG::JPEG=libjpeg meshoptimizer::meshoptimizer=-lmeshoptimizer
+                 libatlas::draco=-ldraco libatlas::webp=libwebp libatlas::mpfr=mpfr libatlas::gmp=gmp libatlas::OpenMeshCore=-lOpenMeshCore
+                 Threads::Threads=-lpthread ${CMAKE_DL_LIBS}=-l${CMAKE_DL_LIBS}
+                 glfw=glfw3 PkgConfig::EPOXY=epoxy PkgConfig::EGL=egl PkgConfig::IMGUI=imgui)
+set(ATLAS_HEADERS_ONLY glm::glm fmt::fmt-header-only nlohmann_json::nlohmann_json atlas_options)
+# Targets of the build that stand for headers and the libraries behind them.
+set(ATLAS_STANDS_FOR_CGAL::CGAL libatlas::mpfr libatlas::gmp)
+set(ATLAS_STANDS_FOR_atlas_openmesh libatlas::OpenMeshCore)
 
-# atlas_gather(TARGET OUTPUT_NAME module...): a library of all the modules' objects.
-function(atlas_gather target output)
+# atlas_component(NAME folder...): the folders, the library libatlasgeo_NAME of all their objects, and what
+# is installed of them. It links the library of the component before it.
+function(atlas_component name)
+  if(NOT name IN_LIST ATLAS_COMPONENTS)
+    return()
+  endif()
   set(objects "")
   set(libraries "")
   foreach(module IN LISTS ARGN)
+    add_subdirectory(${module})
     list(APPEND objects $<TARGET_OBJECTS:atlas_${module}>)
     get_target_property(linked atlas_${module} LINK_LIBRARIES)
     foreach(library IN LISTS linked)
       string(REGEX REPLACE "^\\$<LINK_ONLY:(.*)>$" "\\1" library "${library}")
-      if(library IN_LIST ATLAS_LINK_AS_TARGET)
-        list(APPEND libraries ${library})
-      elseif(library STREQUAL CGAL::CGAL)
-        list(APPEND libraries libatlas::mpfr libatlas::gmp)
-      elseif(library STREQUAL atlas_openmesh)
-        list(APPEND libraries libatlas::OpenMeshCore)
-      elseif(library STREQUAL CMAKE_DL_LIBS OR library MATCHES "^libatlas::")
+      if(DEFINED ATLAS_STANDS_FOR_${library})
+        list(APPEND libraries ${ATLAS_STANDS_FOR_${library}})
+      elseif(";${ATLAS_LINKED}" MATCHES ";${library}=")
         list(APPEND libraries ${library})
       elseif(NOT library IN_LIST ATLAS_HEADERS_ONLY AND NOT library MATCHES "^atlas_")
         message(FATAL_ERROR "cmake/AtlasInstall.cmake does not know how an installed libatlas links "
                             "${library} (folder ${module}): add it there")
       endif()
     endforeach()
+    if(LIBATLAS_INSTALL)
+      atlas_install_headers(${module})
+    endif()
   endforeach()
+  if(name STREQUAL uv)
+    list(APPEND libraries Threads::Threads)
+  endif()
   list(REMOVE_DUPLICATES libraries)
+  set(target libatlas_${name})
   add_library(${target} ${objects})
-  target_link_libraries(${target} PRIVATE ${libraries} Threads::Threads)
+  add_library(libatlas::${name} ALIAS ${target})
+  target_link_libraries(${target} PRIVATE ${libraries})
+  list(FIND ATLAS_COMPONENTS ${name} before)
+  set(below "")
+  if(before GREATER 0)
+    math(EXPR before "${before} - 1")
+    list(GET ATLAS_COMPONENTS ${before} below)
+    target_link_libraries(${target} PUBLIC libatlas_${below})
+  endif()
   target_include_directories(${target} INTERFACE $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}>
                                                  $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
   target_compile_features(${target} PUBLIC cxx_std_20)
-  set_target_properties(${target} PROPERTIES OUTPUT_NAME ${output} LINKER_LANGUAGE CXX
+  set_target_properties(${target} PROPERTIES OUTPUT_NAME atlasgeo_${name} EXPORT_NAME ${name} LINKER_LANGUAGE CXX
                         VERSION ${PROJECT_VERSION} SOVERSION ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR})
+  if(LIBATLAS_RUNPATH)  # the libraries lie side by side
+    set_target_properties(${target} PROPERTIES INSTALL_RPATH $ORIGIN)
+  endif()
   if(LIBATLAS_INSTALL)
     install(TARGETS ${target} EXPORT libatlasTargets COMPONENT development
             LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR} ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
+    atlas_install_pkgconfig("${name}" "${below}" "${libraries}")
   elseif(BUILD_SHARED_LIBS)  # which installed programs of the parent project need
     install(TARGETS ${target} LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR} NAMELINK_SKIP)
   endif()
@@ -60,47 +86,80 @@ function(atlas_install_headers module)
   endforeach()
 endfunction()
 
-function(atlas_install_package)
-  get_property(modules GLOBAL PROPERTY ATLAS_MODULES)
-  set(view ${modules})
-  list(FILTER view INCLUDE REGEX "^view$")
-  list(REMOVE_ITEM modules view)
-  atlas_gather(libatlas atlasgeo ${modules})
-  set_target_properties(libatlas PROPERTIES EXPORT_NAME libatlas)
-  add_library(libatlas::libatlas ALIAS libatlas)
-  if(view)
-    atlas_gather(libatlas_view atlasgeo_view ${view})
-    target_link_libraries(libatlas_view PUBLIC libatlas)
-    set_target_properties(libatlas_view PROPERTIES EXPORT_NAME view)
-    add_library(libatlas::view ALIAS libatlas_view)
+# The image module lies beside the library; a program that holds the library itself looks there. The
+# loader looks in the system's folders anyway, and distributions refuse run paths to them, so
+# libatlasConfig.cmake and the files for pkg-config leave them out there.
+set(LIBATLAS_HAS_RUNPATH OFF)
+if(LIBATLAS_RUNPATH AND NOT BUILD_SHARED_LIBS AND NOT CMAKE_SKIP_RPATH AND NOT CMAKE_SKIP_INSTALL_RPATH)
+  set(LIBATLAS_HAS_RUNPATH ON)
+endif()
+
+# Whoever links a static library links what it needs, too. `component` is empty for the whole library.
+function(atlas_install_pkgconfig component below libraries)
+  set(PC_NAME libatlas)
+  set(PC_REQUIRES "")
+  set(PC_LIBS "")
+  if(component)
+    set(PC_NAME libatlas-${component})
+    set(PC_LIBS "-L\${libdir} -latlasgeo_${component}")
   endif()
-  if(LIBATLAS_INSTALL)
-    foreach(module IN LISTS modules view)
-      atlas_install_headers(${module})
-    endforeach()
-    atlas_install_descriptions("${view}")
+  if(below)
+    set(PC_REQUIRES libatlas-${below})
   endif()
+  set(packages "")
+  set(options "")
+  foreach(library IN LISTS libraries)
+    string(REGEX REPLACE "^.*;${library}=([^;]*).*$" "\\1" linked ";${ATLAS_LINKED}")
+    if(library STREQUAL libatlas::OpenMeshCore)
+      get_filename_component(folder ${OPENMESH_CORE_LIBRARY} DIRECTORY)
+      if(NOT folder IN_LIST CMAKE_CXX_IMPLICIT_LINK_DIRECTORIES)
+        string(APPEND options " -L${folder}")
+      endif()
+    endif()
+    if(linked MATCHES "^-")
+      string(APPEND options " ${linked}")
+    else()
+      string(APPEND packages " ${linked}")
+    endif()
+  endforeach()
+  if(BUILD_SHARED_LIBS)
+    set(PC_PRIVATE "Requires.private:${packages}\nLibs.private:${options}")
+  else()
+    set(PC_PRIVATE "")
+    string(APPEND PC_REQUIRES "${packages}")
+    string(APPEND PC_LIBS "${options}")
+    if(component STREQUAL "reading" AND LIBATLAS_HAS_RUNPATH
+       AND NOT CMAKE_INSTALL_FULL_LIBDIR IN_LIST CMAKE_CXX_IMPLICIT_LINK_DIRECTORIES)
+      string(APPEND PC_LIBS " -Wl,-rpath,\${libdir}")
+    endif()
+  endif()
+  file(RELATIVE_PATH PC_UP /prefix/${CMAKE_INSTALL_LIBDIR}/pkgconfig /prefix)
+  string(REGEX REPLACE "/$" "" PC_UP ${PC_UP})
+  configure_file(${PROJECT_SOURCE_DIR}/cmake/libatlas.pc.in ${PROJECT_BINARY_DIR}/${PC_NAME}.pc @ONLY)
+  install(FILES ${PROJECT_BINARY_DIR}/${PC_NAME}.pc
+          DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig COMPONENT development)
 endfunction()
 
-# Installs the package for CMake, the one for pkg-config, and the licences.
-function(atlas_install_descriptions view)
+# The target libatlas::libatlas of all components but the player's, the package for CMake, the file for
+# pkg-config, and the licences.
+function(atlas_install_package)
+  set(components ${ATLAS_COMPONENTS})
+  list(REMOVE_ITEM components view)
+  list(GET components -1 last)
+  add_library(libatlas INTERFACE)
+  target_link_libraries(libatlas INTERFACE libatlas_${last})
+  add_library(libatlas::libatlas ALIAS libatlas)
+  if(NOT LIBATLAS_INSTALL)
+    return()
+  endif()
+  atlas_install_pkgconfig("" ${last} "")
   include(CMakePackageConfigHelpers)
   set(package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/libatlas)
-  set(LIBATLAS_HAS_VIEW OFF)
-  if(view)
-    set(LIBATLAS_HAS_VIEW ON)
-  endif()
   set(LIBATLAS_IS_STATIC ON)
   if(BUILD_SHARED_LIBS)
     set(LIBATLAS_IS_STATIC OFF)
   endif()
-  # The image module lies beside the library; a program that holds the library itself looks there. The
-  # loader looks in the system's folders anyway, and distributions refuse run paths to them, so
-  # libatlasConfig.cmake and the pkg-config file leave them out there.
-  set(LIBATLAS_HAS_RUNPATH OFF)
-  if(LIBATLAS_RUNPATH AND NOT BUILD_SHARED_LIBS AND NOT CMAKE_SKIP_RPATH AND NOT CMAKE_SKIP_INSTALL_RPATH)
-    set(LIBATLAS_HAS_RUNPATH ON)
-  endif()
+  install(TARGETS libatlas EXPORT libatlasTargets COMPONENT development)
   install(EXPORT libatlasTargets NAMESPACE libatlas:: DESTINATION ${package_dir} COMPONENT development)
   configure_package_config_file(${PROJECT_SOURCE_DIR}/cmake/libatlasConfig.cmake.in
                                 ${PROJECT_BINARY_DIR}/libatlasConfig.cmake
@@ -110,29 +169,6 @@ function(atlas_install_descriptions view)
   install(FILES ${PROJECT_BINARY_DIR}/libatlasConfig.cmake
                 ${PROJECT_BINARY_DIR}/libatlasConfigVersion.cmake
           DESTINATION ${package_dir} COMPONENT development)
-
-  # Whoever links a static library links what it needs, too.
-  set(needed_packages "tbb fmt zlib mpfr gmp")
-  set(needed_libraries "-lOpenMeshCore -ldraco -lwebp -lmeshoptimizer -lpthread -ldl")
-  get_filename_component(openmesh_dir ${OPENMESH_CORE_LIBRARY} DIRECTORY)
-  if(NOT openmesh_dir IN_LIST CMAKE_CXX_IMPLICIT_LINK_DIRECTORIES)
-    string(PREPEND needed_libraries "-L${openmesh_dir} ")
-  endif()
-  if(BUILD_SHARED_LIBS)
-    set(PC_PRIVATE "Requires.private: ${needed_packages}\nLibs.private: ${needed_libraries}")
-    set(PC_PUBLIC "")
-  else()
-    set(PC_PRIVATE "Requires: ${needed_packages}")
-    set(PC_PUBLIC " ${needed_libraries}")
-    if(LIBATLAS_HAS_RUNPATH AND NOT CMAKE_INSTALL_FULL_LIBDIR IN_LIST CMAKE_CXX_IMPLICIT_LINK_DIRECTORIES)
-      string(APPEND PC_PUBLIC " -Wl,-rpath,\${libdir}")
-    endif()
-  endif()
-  file(RELATIVE_PATH PC_UP /prefix/${CMAKE_INSTALL_LIBDIR}/pkgconfig /prefix)
-  string(REGEX REPLACE "/$" "" PC_UP ${PC_UP})
-  configure_file(${PROJECT_SOURCE_DIR}/cmake/libatlas.pc.in ${PROJECT_BINARY_DIR}/libatlas.pc @ONLY)
-  install(FILES ${PROJECT_BINARY_DIR}/libatlas.pc
-          DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig COMPONENT development)
   install(FILES ${PROJECT_SOURCE_DIR}/LICENSE ${PROJECT_SOURCE_DIR}/THIRD_PARTY.md
           DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT development)
 endfunction()

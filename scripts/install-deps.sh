@@ -8,16 +8,17 @@ set -eu
 
 build_packages="
   g++ cmake ninja-build ccache pkg-config
-  libcgal-dev libopenmesh-dev libopenimageio-dev libglm-dev libeigen3-dev libtbb-dev libfmt-dev
-  nlohmann-json3-dev libtinygltf-dev libmeshoptimizer-dev libdraco-dev zlib1g-dev libwebp-dev
+  libopenmesh-dev libopenimageio-dev libglm-dev libeigen3-dev libtbb-dev libfmt-dev
+  nlohmann-json3-dev libtinygltf-dev libmeshoptimizer-dev libdraco-dev zlib1g-dev libpng-dev libjpeg-dev
+  libwebp-dev
   libcli11-dev
   libembree-dev
   libglfw3-dev libepoxy-dev libegl-dev libgl-dev libimgui-dev"
 test_packages="
-  libgtest-dev libbenchmark-dev libcoin-dev xvfb xauth pngcheck gnuplot-nox valgrind
-  libgl1-mesa-dri libegl1 chromium"
+  libgtest-dev libbenchmark-dev libcgal-dev libcoin-dev xvfb xauth pngcheck gnuplot-nox valgrind
+  libgl1-mesa-dri libegl1 abigail-tools python3"
 # Not every release has these. Tests that need them are skipped there.
-test_packages_if_any="view3dscene"
+test_packages_if_any="view3dscene chromium python3-websocket"
 
 case "${1:-all}" in
   build) wanted="$build_packages" if_any="" ;;

@@ -13,6 +13,7 @@
 #include "apps/common/quantity.h"
 #include "libatlas/core/counted.h"
 #include "libatlas/core/file_extension.h"
+#include "libatlas/image/webp.h"
 
 namespace atlas::app {
 namespace {
@@ -28,7 +29,7 @@ void add_scene_options(CLI::App& app, ExportCommand& command, RawText& raw) {
                  "Scene: .obj, .ply, .off, .stl, .gltf, .glb, or a .wrl or .wrz of this program")
       ->required();
   app.add_option("-o,--output", command.options.target,
-                 "World to write: .wrl, .wrz, .obj, .gltf or .glb; --plan needs none");
+                 "World to write: .html, .wrl, .wrz, .obj, .gltf or .glb; --plan needs none");
   app.add_option("--unit", raw.unit, "Length of one scene unit: m, cm, mm, in, ft, km or metres")
       ->capture_default_str();
   app.add_option("--illumination", command.read.illumination_file,
@@ -45,6 +46,7 @@ void add_scene_options(CLI::App& app, ExportCommand& command, RawText& raw) {
       ->transform(choices<Up>({{"y", Up::y}, {"z", Up::z}}))
       ->type_name("NAME")
       ->default_str("y");
+  add_trust_options(app, command.read);
 }
 
 void add_chart_options(CLI::App& app, ExportCommand& command) {
@@ -119,9 +121,11 @@ void add_texture_options(CLI::App& app, ExportOptions& options, RawText& raw) {
                  "Graphics memory for all pages, e.g. 800MB, without a unit bytes: sets --atlases "
                  "from --atlas-size")
       ->excludes("--atlases");
-  app.add_option("--texel", raw.texel,
-                 "Length of a texel on the real surface, e.g. 5mm, without a unit metres; default: "
-                 "what the pages can hold, within 1 to 10 mm, and finer for fine scans");
+  app.add_option(
+      "--texel", raw.texel,
+      "Length of a texel on the real surface, e.g. 5mm, without a unit metres; default: "
+      "what the pages can hold, within 1 to 10 mm, and finer for fine scans; uvs without "
+      "light get a page as large as it needs");
   add_off_flag(app, "--ignore-texture-density", options.follow_textures,
                "Do not refine where the diffuse texture is finer than --texel");
   app.add_option("--threshold", options.threshold,
@@ -184,9 +188,14 @@ void add_page_options(CLI::App& app, ExportOptions& options) {
       ->check(positive());
   app.add_flag("--exr", options.exr, "Also write scene-linear OpenEXR pages")
       ->excludes("--charts-only");
+  app.add_flag("--linear", options.linear,
+               "Pages of an .html hold the light itself: exposure, tone curve and false colours in "
+               "the browser")
+      ->excludes("--charts-only");
   CLI::Option* format =
       app.add_option("--texture-format", options.texture_format,
-                     "Format of the pages' images: png, or webp, which is smaller (.gltf, .glb)")
+                     "Format of the pages' images: png, or webp, which is smaller (.gltf, .glb, "
+                     ".html); unless given, .html has webp of quality 97")
           ->transform(
               choices<TextureFormat>({{"png", TextureFormat::png}, {"webp", TextureFormat::webp}}))
           ->type_name("NAME")
@@ -213,14 +222,19 @@ void add_run_options(CLI::App& app, ExportCommand& command) {
                  "Write a report of every stage, or with --plan of the plan: a page to read if it "
                  "ends in .html, else JSON; may be given several times")
       ->allow_extra_args(false);
+  app.add_flag("--report-charts", command.request.chart_rows,
+               "The JSON report has a row of figures for each chart")
+      ->needs("--report");
   app.add_option("--false-colour", command.options.false_colour,
                  "Also draw the light in false colours, from above and on the pages (.png)")
       ->excludes("--charts-only");
   app.add_option("--depfile", command.depfile,
                  "Also write a rule for make and ninja that lists every file that was read");
+  app.add_flag("--durable", command.options.durable,
+               "End only when the disk holds the world, so that it outlasts a power failure");
   app.add_flag("--plan", command.plan_only, "Print what would run and why, and stop");
   add_off_flag(app, "--no-error", command.options.measure_error, "Do not measure the pages' error");
-  app.add_flag("-q,--quiet", command.quiet, "Print errors only");
+  app.add_flag("-q,--quiet", command.quiet, "Print warnings and errors only");
   app.add_option("--threads", command.threads, "Threads; 0: all cores")
       ->check(within(0, 1024))
       ->capture_default_str();
@@ -236,6 +250,7 @@ std::string quoted(const std::string& word) {
   return out + "'";
 }
 
+constexpr int kHtmlQuality = 97;                // of WebP
 constexpr double kMostPages = 1e6;              // the limit of --atlases
 constexpr double kBytesPerTexel = 4.0 * 4 / 3;  // RGBA8 and its mip chain
 
@@ -310,8 +325,8 @@ std::optional<ExportCommand> parse_export_command(int argc, char** argv, int& ex
                 "--plan with --quiet tells nothing (leave one out, or add --report)");
     return std::nullopt;
   }
-  for (int i = 0; i < argc; ++i) command.words += (i > 0 ? " " : "") + quoted(argv[i]);
-  command.option_values = app.config_to_str(true, false);
+  for (int i = 0; i < argc; ++i) command.request.command += (i > 0 ? " " : "") + quoted(argv[i]);
+  command.request.options = option_values(app);
   command.options.report_pictures =
       !command.plan_only && std::any_of(command.reports.begin(), command.reports.end(), is_page);
   // An OBJ that keeps the scene has the colours of its vertices as the scene's file has them,
@@ -319,7 +334,14 @@ std::optional<ExportCommand> parse_export_command(int argc, char** argv, int& ex
   const bool as_written = command.options.keep_scene && command.options.charts_only &&
                           lower_extension(command.options.target) == ".obj";
   command.read.srgb_colours = command.options.quantity == Quantity::colour && !as_written;
+  command.options.colours_are_light = app.count("--quantity") > 0;
   command.options.larger_plain_page = app.count("--atlas-size") == 0;
+  // Pages of HTML are to be small.
+  if (lower_extension(command.options.target) == ".html" && app.count("--texture-format") == 0 &&
+      command.options.atlas_size <= kLongestWebpSide) {
+    command.options.texture_format = TextureFormat::webp;
+    command.options.webp_quality = kHtmlQuality;
+  }
   const bool asked = app.count("--atlases") > 0;
   if (asked) command.options.plain_pages = command.options.atlases;
   if (asked || app.count("--memory") > 0) command.options.lightmap_pages = command.options.atlases;

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "libatlas/pipeline/export_options.h"
+#include "libatlas/report/export_report.h"
 #include "libatlas/scene/reader.h"
 
 namespace atlas::app {
@@ -15,7 +16,7 @@ struct ExportCommand {
   std::filesystem::path scene;
   std::vector<std::filesystem::path> reports;  // a .html is a page, others are JSON
   std::filesystem::path depfile;               // empty if not asked for
-  std::string words, option_values;            // the command line, and every option with its value
+  ReportRequest request;                       // the command line, and every option with its value
   ReadOptions read;
   ExportOptions options;
   std::optional<double> uv_aspect;  // nothing: what the scene's file says of it

@@ -1,13 +1,13 @@
 #include "apps/atlas-export/flag_names.h"
 
 #include <array>
-#include <utility>
+
+#include "apps/common/options.h"
 
 namespace atlas::app {
 namespace {
 
-using FlagName = std::pair<std::string_view, std::string_view>;
-constexpr std::array<FlagName, 33> kFlagNames{{
+constexpr std::array<FlagName, 36> kFlagNames{{
     {"ExportOptions::atlases", "--atlases"},
     {"ExportOptions::lightmap_pages", "--atlases"},
     {"ExportOptions::plain_pages", "--atlases"},
@@ -28,7 +28,10 @@ constexpr std::array<FlagName, 33> kFlagNames{{
     {"ExportOptions::keep_scene", "--keep-scene"},
     {"ExportOptions::uv_set", "--uv-set"},
     {"ExportOptions::udim", "--udim"},
+    {"ExportOptions::linear", "--linear"},
+    {"ExportOptions::exr", "--exr"},
     {"ExportOptions::quantity", "--quantity"},
+    {"ExportOptions::colours_are_light", "--quantity"},
     {"ExportOptions::split_at_light", "--across-light"},
     {"ChartOptions::cone_degrees", "--cone"},
     {"ChartOptions::max_stretch", "--max-stretch"},
@@ -43,27 +46,10 @@ constexpr std::array<FlagName, 33> kFlagNames{{
     {"ReadOptions::illumination_file", "--illumination"},
 }};
 
-bool in_name(char c) {
-  return (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || c == '_';
-}
-
 }  // namespace
 
 std::string with_flag_names(std::string_view text) {
-  std::string out(text);
-  for (const auto& [field, flag] : kFlagNames) {
-    std::size_t at = 0;
-    while ((at = out.find(field, at)) != std::string::npos) {
-      const std::size_t end = at + field.size();
-      if (end < out.size() && in_name(out[end])) {
-        at = end;  // a longer name
-      } else {
-        out.replace(at, field.size(), flag);
-        at += flag.size();
-      }
-    }
-  }
-  return out;
+  return with_flags(with_flags(text, kFlagNames), kTrustFlags);
 }
 
 }  // namespace atlas::app

@@ -11,6 +11,7 @@
 #include "apps/atlas-export/flag_names.h"
 #include "apps/common/depfile.h"
 #include "apps/common/files.h"
+#include "apps/common/options.h"
 #include "apps/common/program.h"
 #include "apps/common/terminal.h"
 #include "libatlas/core/clock.h"
@@ -42,12 +43,14 @@ void print_result(const ExportReport& report, const ExportOptions& options,
   std::vector<Extent> plain;
   for (const PageReport& page : report.pages)
     if (report.gpu_bytes == 0) plain.push_back({page.width, page.height});
+  const std::string texels =
+      options.texel_metres > 0 ? fmt::format(", texels of {:g} m", options.texel_metres) : "";
   terminal.line(fmt::format("{}: {} on {}, {}", report.target.string(),
                             counted(report.triangles_out, "triangle"), counted(pages, "page"),
                             plain.empty()
                                 ? fmt::format("{:.1f} MiB of graphics memory",
                                               double(report.gpu_bytes) / (1024.0 * 1024.0))
-                                : plain_pages_text(plain, options.udim)));
+                                : plain_pages_text(plain, options.udim) + texels));
   if (has_lightmap(report.lit, options)) terminal.line(lightmap_text(lightmap_of(report, options)));
 }
 
@@ -192,7 +195,8 @@ Status check_files_stay(const LoadedScene& loaded, const app::ExportCommand& com
         if (Status s = app::check_output(output, {image}); !s.ok()) return s;
   known.insert(known.end(), {command.scene, command.read.illumination_file});
   for (const auto& [flag, output] : beside) known.push_back(output);
-  for (const std::filesystem::path& image : images_there(loaded.scene, command.options))
+  const ExportOptions planned = planned_options(loaded.scene, command.options);
+  for (const std::filesystem::path& image : images_there(loaded.scene, planned))
     for (const std::filesystem::path& file : known) {
       std::error_code error;
       if (std::filesystem::equivalent(image, file, error))
@@ -241,10 +245,8 @@ Status write_report(ExportReport report, const StageReport& reading,
   report.wall_seconds += reading.wall_seconds;
   report.peak_memory = std::max(report.peak_memory, reading.peak_memory);
   for (const std::filesystem::path& path : command.reports) {
-    const Status written =
-        app::is_page(path)
-            ? write_html(report, {command.words, command.option_values, app::version()}, path)
-            : write_json(report, path);
+    const Status written = app::is_page(path) ? write_html(report, command.request, path)
+                                              : write_json(report, path, command.request);
     if (!written.ok()) return written;
     terminal.line(fmt::format("{}: report", path.string()));
   }
@@ -299,7 +301,11 @@ Status run(const app::ExportCommand& command, app::Terminal& terminal) {
   if (Status s = check_files_stay(*loaded, command); !s.ok()) return s;
   for (const std::string& line : loaded->defects.lines()) terminal.line("defect: " + line);
   const StageReport reading = reading_stage(*loaded, cpu, wall);
-  if (command.plan_only) return plan(command, *loaded, reading, terminal);
+  if (command.plan_only) {
+    if (const std::string line = colours_text(loaded->scene, command.options); !line.empty())
+      context.say(line);
+    return plan(command, *loaded, reading, terminal);
+  }
   terminal.line(stage_line(reading));
   ExportOptions options = command.options;
   options.charts.uv_aspect =
@@ -310,7 +316,7 @@ Status run(const app::ExportCommand& command, app::Terminal& terminal) {
       *loaded, options, [&](const StageReport& stage) { terminal.line(stage_line(stage)); },
       context);
   if (!report.ok()) return report.status();
-  print_result(*report, command.options, terminal);
+  print_result(*report, planned_options(loaded->scene, command.options), terminal);
   if (!command.options.charts_only && !command.options.keep_scene)
     name_unread_values(loaded->scene, terminal);
   for (const std::string& line : report->not_kept) terminal.line("not kept: " + line);
@@ -322,6 +328,7 @@ int main_of(int argc, char** argv) {
   int code = 0;
   const auto command = app::parse_export_command(argc, argv, code);
   if (!command) return code;
+  app::name_input(command->scene);
   app::Terminal terminal("atlas-export", command->quiet);
   terminal.reword(app::with_flag_names);
   const Status status = run(*command, terminal);

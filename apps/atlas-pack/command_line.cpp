@@ -100,7 +100,7 @@ void add_run_options(CLI::App& app, PackCommand& c) {
       ->check(within(0, 1024));
   app.add_option("--preview", c.preview, "Also draw the pages: FILE.svg or FILE.png");
   app.add_flag("--json", c.json, "Print a summary as JSON on stdout");
-  app.add_flag("-q,--quiet", c.quiet, "Print errors only");
+  app.add_flag("-q,--quiet", c.quiet, "Print warnings and errors only");
 }
 
 // Returns a complaint about options that would change nothing, which nobody wants who gives them.
@@ -214,6 +214,7 @@ void add_mesh(CLI::App& app, PackCommand& c) {
             return good ? std::string() : "'" + text + "' must be 1, 2, or a multiple of 4 to 64";
           },
           ""));
+  add_trust_options(*mesh, c.read);
   add_depfile_option(*mesh, c);
   add_page_options(*mesh, c);
   add_effort_options(*mesh, c);

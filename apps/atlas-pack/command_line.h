@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "libatlas/pack/pack.h"
+#include "libatlas/scene/reader.h"
 
 namespace atlas::app {
 
@@ -28,6 +29,7 @@ struct PackCommand {
   int page_side = 2048;
   bool keep_density = false;
   std::optional<double> uv_aspect;  // nothing: what the mesh's file says of it
+  ReadOptions read;                 // what users choose of it
 };
 
 // Fills in the command. Returns -1 to go on, or the exit code with which the program should end

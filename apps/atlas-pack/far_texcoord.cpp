@@ -37,7 +37,7 @@ std::string place_in_obj(const std::filesystem::path& path, const Vec2f& uv) {
 std::optional<Vec2f> largest_texcoord(const PackCommand& command,
                                       const std::vector<std::uint32_t>& triangles,
                                       const Context& context) {
-  ReadOptions read;
+  ReadOptions read = command.read;
   read.load_textures = false;
   const Result<LoadedScene> loaded = read_scene(command.input, read, context);
   if (!loaded.ok()) return {};

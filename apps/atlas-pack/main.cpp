@@ -6,8 +6,10 @@
 #include <filesystem>
 #include <span>
 #include <string>
+#include <string_view>
 
 #include "apps/atlas-pack/commands.h"
+#include "apps/common/options.h"
 #include "apps/common/program.h"
 #include "libatlas/core/clock.h"
 #include "libatlas/core/counted.h"
@@ -71,7 +73,9 @@ std::string names_of(std::span<const std::filesystem::path> files) {
 int main_of(int argc, char** argv) {
   app::PackCommand command;
   if (const int code = app::parse_command_line(argc, argv, command); code >= 0) return code;
+  app::name_input(command.input);
   app::Terminal terminal("atlas-pack", command.quiet || command.json);
+  terminal.reword([](std::string_view text) { return app::with_flags(text, app::kTrustFlags); });
   const Context context = terminal.context(command.threads);
   const double start = cpu_seconds();
   Result<app::PackedAtlas> atlas =

@@ -272,7 +272,7 @@ Result<std::string> rule_of(const PackCommand& c, const LoadedScene& loaded) {
 
 Result<PackedAtlas> run_mesh(const PackCommand& c, const Context& context) {
   if (Status s = check_outputs(c); !s.ok()) return s;
-  ReadOptions read;
+  ReadOptions read = c.read;
   read.load_textures = false;
   read.normals = true;
   Result<LoadedScene> loaded = read_scene(c.input, read, context);

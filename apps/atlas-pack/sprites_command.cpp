@@ -1,6 +1,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
+#include <optional>
 #include <set>
 #include <tuple>
 
@@ -12,6 +14,7 @@
 #include "libatlas/core/atomic_file.h"
 #include "libatlas/core/file_extension.h"
 #include "libatlas/image/image_io.h"
+#include "libatlas/image/image_sides.h"
 
 namespace atlas::app {
 namespace {
@@ -119,6 +122,27 @@ Result<SpriteFolder> list_sprites(const fs::path& folder, const Context& context
   return found;
 }
 
+// Refuses an image that is larger than the page, before memory is taken to decode it: a file of a
+// megabyte can state a gigabyte. One whose borders are trimmed may become smaller, but not from any
+// size.
+Status check_sides(const fs::path& path, const PackCommand& c) {
+  constexpr double kFewTexels = 1 << 24, kMostPages = 16;
+  const std::optional<ImageSides> sides = image_sides(path);
+  if (!sides) return {};
+  const Extent& page = c.options.page;  // a height of 0 is any height
+  const double width = page.width, height = page.height > 0 ? page.height : HUGE_VAL;
+  const double w = double(sides->width), h = double(sides->height);
+  const bool fits =
+      (w <= width && h <= height) || (c.options.allow_rotation && h <= width && w <= height);
+  if (fits || (c.trim && w * h <= std::max(kFewTexels, kMostPages * width * height))) return {};
+  return {
+      ErrorCode::no_solution,
+      fmt::format("{}: {} x {} texels are more than the page of {} x {} can hold (give a larger "
+                  "--page, or a smaller image)",
+                  path.string(), sides->width, sides->height, page.width,
+                  page.height > 0 ? fmt::format("{}", page.height) : "any height")};
+}
+
 Result<std::vector<Sprite>> read_sprites(const PackCommand& c, const SpriteFolder& folder,
                                          const Context& context) {
   const std::vector<fs::path>& paths = folder.images;
@@ -127,6 +151,7 @@ Result<std::vector<Sprite>> read_sprites(const PackCommand& c, const SpriteFolde
   for (std::size_t i = 0; i < paths.size(); ++i) {
     if (context.cancelled()) return Status::cancelled();
     context.report("read", double(i) / double(paths.size()));
+    if (Status s = check_sides(paths[i], c); !s.ok()) return s;
     Result<Image8> image = read_image8(paths[i]);
     if (!image.ok()) return image.status();
     Sprite s;

@@ -201,7 +201,7 @@ void add_run_options(CLI::App& app, CommandLine& l) {
   app.add_flag("--plan", l.plan, "print what is compiled and allocated, and why, and end");
   add_off_flag(app, "--no-vsync", l.vsync, "do not wait for the display");
   app.add_flag("--debug", l.debug, "a debug context: every OpenGL error is reported");
-  app.add_flag("-q,--quiet", l.quiet, "print errors only");
+  app.add_flag("-q,--quiet", l.quiet, "print warnings and errors only");
 }
 
 void add_bench_options(CLI::App& app, CommandLine& l) {

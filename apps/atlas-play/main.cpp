@@ -202,6 +202,7 @@ int main_of(int argc, char** argv) {
   using namespace atlas::app;
   Parsed parsed = parse_command_line(argc, argv);
   if (parsed.exit_code) return *parsed.exit_code;
+  name_input(parsed.line.scene);
   Terminal terminal("atlas-play", parsed.line.quiet);
   const atlas::Status status = play(parsed.line, terminal, terminal.context(0));
   if (!status.ok()) terminal.error(status.message());

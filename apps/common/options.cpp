@@ -33,6 +33,11 @@ std::size_t distance(std::string_view a, std::string_view b) {
   return row.back();
 }
 
+// Returns whether a name that ends before this character goes on.
+bool in_name(char c) {
+  return (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || c == '_';
+}
+
 // Returns the command that was chosen, or the program if none was.
 const CLI::App& command_of(const CLI::App& app) {
   const auto chosen = app.get_subcommands();
@@ -202,14 +207,34 @@ CLI::Validator one_of(const std::map<std::string, int>& names) {
       "");
 }
 
+void add_trust_options(CLI::App& app, ReadOptions& read) {
+  app.add_flag("--confine", read.confine,
+               "Refuse a scene that names files outside of its folder, also by links");
+  add_off_flag(app, "--no-limits", read.limits,
+               "Read also what is much larger than its file: text that unpacks, nodes that repeat");
+}
+
+std::string with_flags(std::string_view text, std::span<const FlagName> names) {
+  std::string out(text);
+  for (const auto& [field, flag] : names) {
+    std::size_t at = 0;
+    while ((at = out.find(field, at)) != std::string::npos) {
+      const std::size_t end = at + field.size();
+      if (end < out.size() && in_name(out[end])) {
+        at = end;  // a longer name
+      } else {
+        out.replace(at, field.size(), flag);
+        at += flag.size();
+      }
+    }
+  }
+  return out;
+}
+
 CLI::Option* add_off_flag(CLI::App& app, const std::string& name, bool& value,
                           const std::string& help) {
   return app.add_flag_callback(
       name, [&value] { value = false; }, help);
-}
-
-std::string version() {
-  return LIBATLAS_VERSION;
 }
 
 int parse(CLI::App& app, int argc, char** argv) {
@@ -233,6 +258,17 @@ int parse(CLI::App& app, int argc, char** argv) {
   }
   const std::string empty = about_empty(app);
   return empty.empty() ? -1 : refuse(empty);
+}
+
+std::vector<std::pair<std::string, std::string>> option_values(const CLI::App& app) {
+  std::vector<std::pair<std::string, std::string>> values;
+  for (const CLI::Option* option : app.get_options()) {
+    std::string value = option->get_default_str();
+    if (option->count() > 0)
+      value = option->get_expected_min() == 0 ? "true" : CLI::detail::join(option->results(), " ");
+    if (!value.empty()) values.emplace_back(option->get_name(), value);
+  }
+  return values;
 }
 
 }  // namespace atlas::app

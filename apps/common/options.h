@@ -4,7 +4,13 @@
 
 #include <CLI/CLI.hpp>
 #include <map>
+#include <span>
 #include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "libatlas/scene/reader.h"
 
 namespace atlas::app {
 
@@ -28,12 +34,26 @@ CLI::Validator choices(const std::map<std::string, T>& names) {
 CLI::Option* add_off_flag(CLI::App& app, const std::string& name, bool& value,
                           const std::string& help);
 
+// Adds what a program that reads scenes lets users choose for those of strangers.
+void add_trust_options(CLI::App& app, ReadOptions& read);
+
+// An option's field, as the library's messages name it, and its flag.
+using FlagName = std::pair<std::string_view, std::string_view>;
+
+// Those of add_trust_options().
+inline constexpr FlagName kTrustFlags[] = {{"ReadOptions::confine", "--confine"},
+                                           {"ReadOptions::limits", "--no-limits"}};
+
+// Returns a message of the library with the flags in place of the fields, for the program's users.
+std::string with_flags(std::string_view text, std::span<const FlagName> names);
+
 // Parses the command line, after adding --version. Returns -1 to go on, or the exit code with which
 // the program should end: 0 after the help or the version, 2 after one line about what is wrong.
 int parse(CLI::App& app, int argc, char** argv);
 
-// Returns the version that --version prints.
-std::string version();
+// Returns the options that were given, with their values, and the others that have a default; flags
+// are "true".
+std::vector<std::pair<std::string, std::string>> option_values(const CLI::App& app);
 
 // While it lives, options that are added appear under the heading `name` of --help.
 class OptionGroup {

@@ -15,6 +15,7 @@ namespace atlas::app {
 namespace {
 
 int g_stdout_error = 0;  // errno of the first failure
+std::string g_input;     // of name_input(); made before memory runs out
 
 void note_stdout(bool written) {
   if (!written && g_stdout_error == 0) g_stdout_error = errno ? errno : EIO;
@@ -90,6 +91,10 @@ void print_error(std::string_view program, std::string_view text) {
   print(stderr, fmt::format("{}: error: {}\n", program, one_line(text)));
 }
 
+void name_input(const std::filesystem::path& file) {
+  g_input = file.string() + ": ";
+}
+
 int run_program(const char* name, int argc, char** argv, int (*body)(int, char**)) {
   open_closed_streams();
   // A reader that has left, and a limit on the size of files, become errors of writing, which are
@@ -100,7 +105,8 @@ int run_program(const char* name, int argc, char** argv, int (*body)(int, char**
   try {
     code = body(argc, argv);
   } catch (const std::bad_alloc&) {
-    code = complain(name, "out of memory (fewer --threads, smaller pages or a smaller input)");
+    code = complain(name,
+                    g_input + "out of memory (fewer --threads, smaller pages or a smaller input)");
   } catch (const std::exception& error) {
     code = complain(name, error.what());
   }

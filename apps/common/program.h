@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdio>
+#include <filesystem>
 #include <string>
 #include <string_view>
 
@@ -14,6 +15,9 @@ namespace atlas::app {
 // reader that closes its end of a pipe does not end the program; other failures to write to stdout
 // turn exit code 0 into 1.
 int run_program(const char* name, int argc, char** argv, int (*body)(int argc, char** argv));
+
+// Sets the file that is being worked on, which run_program() names if memory runs out.
+void name_input(const std::filesystem::path& file);
 
 // Writes to stdout or stderr; never throws. A failure on stdout is reported when the program ends.
 void print(std::FILE* stream, std::string_view text);

@@ -65,7 +65,6 @@ void Terminal::error(std::string_view text) {
 }
 
 void Terminal::warning(std::string_view text) {
-  if (quiet_) return;
   clear_bar();
   print(stderr,
         fmt::format("{}: {}\n", program_, one_line(words_ ? words_(text) : std::string(text))));

@@ -14,7 +14,7 @@
 namespace cabin {
 namespace {
 
-constexpr float kPi = std::numbers::pi_v<float>;
+constexpr float kPiFloat = std::numbers::pi_v<float>;
 // The distance from the surface at which rays start, in metres. It is much less than the 8 mm of
 // air behind the door's frame.
 constexpr float kLift = 2e-4f;
@@ -101,7 +101,7 @@ float polygon_form_factor(std::span<const glm::vec3> corners, glm::vec3 point, g
     const float length = glm::length(c);
     if (length > 0) sum += std::atan2(length, glm::dot(a, b)) * glm::dot(c, normal) / length;
   }
-  return std::max(0.0f, sum / (2 * kPi));
+  return std::max(0.0f, sum / (2 * kPiFloat));
 }
 
 Lighting::Lighting(const Tracer& tracer, Lights lights, const LightingOptions& options)
@@ -118,7 +118,7 @@ glm::vec3 Lighting::direct_at(const Vertex& vertex) const {
     int open = 0;
     for (int i = 0; i < samples; ++i) {
       const glm::vec2 r = low_discrepancy(i, shift);
-      const float radius = sun_.radius * std::sqrt(r.x), angle = 2 * kPi * r.y;
+      const float radius = sun_.radius * std::sqrt(r.x), angle = 2 * kPiFloat * r.y;
       const glm::vec3 d = sun_.towards + radius * (std::cos(angle) * t + std::sin(angle) * b);
       open += !tracer_.blocked(origin, glm::normalize(d), 100);
     }
@@ -172,7 +172,7 @@ class Hemisphere {
         normal_(v.normal) {}
   glm::vec3 ray(int i) const {
     const glm::vec2 r = low_discrepancy(i, shift_);
-    const float radius = std::sqrt(r.x), angle = 2 * kPi * r.y;
+    const float radius = std::sqrt(r.x), angle = 2 * kPiFloat * r.y;
     return radius * std::cos(angle) * std::get<0>(tangents_) +
            radius * std::sin(angle) * std::get<1>(tangents_) +
            std::sqrt(std::max(0.0f, 1 - r.x)) * normal_;

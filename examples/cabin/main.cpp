@@ -53,7 +53,7 @@ void describe(CLI::App& app, Arguments& a) {
   app.add_option("--threads", a.threads, "0: as many as there are cores; the files are the same")
       ->check(within(0, 1024))
       ->capture_default_str();
-  app.add_flag("-q,--quiet", a.quiet, "print nothing");
+  app.add_flag("-q,--quiet", a.quiet, "print warnings and errors only");
 }
 
 // Checks the arguments before minutes of work.

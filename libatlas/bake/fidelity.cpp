@@ -28,18 +28,19 @@ struct Sample {
   bool found = false;
 };
 
-Vec3f bilinear(const Image8& image, Vec2f at) {
+// In the image's own values.
+template <class T>
+Vec3f bilinear(const Image<T>& image, Vec2f at) {
   const float fx = std::floor(at.x - 0.5f), fy = std::floor(at.y - 0.5f);
   const float tx = at.x - 0.5f - fx, ty = at.y - 0.5f - fy;
   const auto column = [&](float x) { return std::clamp(static_cast<int>(x), 0, image.width - 1); };
   const auto row = [&](float y) { return std::clamp(static_cast<int>(y), 0, image.height - 1); };
-  const std::uint8_t* p[4] = {image.at(column(fx), row(fy)), image.at(column(fx + 1), row(fy)),
-                              image.at(column(fx), row(fy + 1)),
-                              image.at(column(fx + 1), row(fy + 1))};
+  const T* p[4] = {image.at(column(fx), row(fy)), image.at(column(fx + 1), row(fy)),
+                   image.at(column(fx), row(fy + 1)), image.at(column(fx + 1), row(fy + 1))};
   float out[3];
   for (int k = 0; k < 3; ++k) {
     const float low = (1 - tx) * p[0][k] + tx * p[1][k], high = (1 - tx) * p[2][k] + tx * p[3][k];
-    out[k] = ((1 - ty) * low + ty * high) * (1.0f / 255);
+    out[k] = (1 - ty) * low + ty * high;
   }
   return {out[0], out[1], out[2]};
 }
@@ -214,6 +215,12 @@ struct FidelityMeter::State {
   ToneMapping tone;
   std::vector<Sample> samples;         // in the order drawn
   std::vector<std::uint32_t> by_page;  // sample ids sorted by page
+
+  std::span<const std::uint32_t> on_page(std::int32_t page) const {
+    const auto before = [this](std::uint32_t id, std::int32_t p) { return samples[id].page < p; };
+    const auto begin = std::lower_bound(by_page.begin(), by_page.end(), page, before);
+    return {begin, std::lower_bound(begin, by_page.end(), page + 1, before)};
+  }
 };
 
 FidelityMeter::FidelityMeter(std::unique_ptr<State> state) : state_(std::move(state)) {}
@@ -261,15 +268,46 @@ FidelityMeter::~FidelityMeter() = default;
 
 void FidelityMeter::add_page(std::int32_t page, const Image8& display) {
   if (display.empty() || display.channels < 3 || !display.whole()) return;
-  auto& samples = state_->samples;
-  const auto& ids = state_->by_page;
-  auto at = std::lower_bound(ids.begin(), ids.end(), page, [&](std::uint32_t id, std::int32_t p) {
-    return samples[id].page < p;
-  });
-  for (; at != ids.end() && samples[*at].page == page; ++at) {
-    samples[*at].shown = bilinear(display, samples[*at].texel);
-    samples[*at].found = true;
+  for (const std::uint32_t id : state_->on_page(page)) {
+    Sample& sample = state_->samples[id];
+    const Vec3f v = bilinear(display, sample.texel);
+    sample.shown = {v.x * (1.0f / 255), v.y * (1.0f / 255), v.z * (1.0f / 255)};
+    sample.found = true;
   }
+}
+
+void FidelityMeter::add_light_page(std::int32_t page, const ImageF& light) {
+  if (light.empty() || light.channels < 3 || !light.whole()) return;
+  for (const std::uint32_t id : state_->on_page(page)) {
+    Sample& sample = state_->samples[id];
+    sample.shown = state_->tone.display(bilinear(light, sample.texel));
+    sample.found = true;
+  }
+}
+
+FidelityMeter::Cells FidelityMeter::cells(std::int32_t page, int width, int height,
+                                          int side) const {
+  const auto count = [&](int texels) { return std::size_t((texels + side - 1) / side); };
+  const std::size_t columns = count(width), rows = count(height);
+  std::vector<double> square(columns * rows, 0);
+  std::vector<std::uint32_t> samples(square.size(), 0);
+  for (const std::uint32_t id : state_->on_page(page)) {
+    const Sample& s = state_->samples[id];
+    const auto place = [&](float texel, std::size_t most) {
+      return std::min(most - 1, std::size_t(std::max(texel, 0.0f)) / std::size_t(side));
+    };
+    const std::size_t cell = place(s.texel.y, rows) * columns + place(s.texel.x, columns);
+    const Vec3f want = state_->tone.display(
+        {positive(s.luminance.x), positive(s.luminance.y), positive(s.luminance.z)});
+    const double d[3] = {double{s.shown.x} - want.x, double{s.shown.y} - want.y,
+                         double{s.shown.z} - want.z};
+    square[cell] += (d[0] * d[0] + d[1] * d[1] + d[2] * d[2]) / 3;
+    ++samples[cell];
+  }
+  Cells result{columns, std::vector<float>(square.size(), -1)};
+  for (std::size_t i = 0; i < square.size(); ++i)
+    if (samples[i] > 0) result.rms[i] = static_cast<float>(std::sqrt(square[i] / samples[i]));
+  return result;
 }
 
 Fidelity FidelityMeter::result() const {

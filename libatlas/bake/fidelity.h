@@ -75,6 +75,18 @@ class FidelityMeter {
   // image from bake_page, or one of the same size. If the image is empty, not whole, or has fewer
   // than three channels, its samples count as if the charts had no page.
   void add_page(std::int32_t page, const Image8& display);
+  // The same for a page of light, which a viewer interpolates before the tone curve.
+  void add_light_page(std::int32_t page, const ImageF& light);
+
+  // The error on a page that was given, where its samples lie.
+  struct Cells {
+    std::size_t columns = 0;
+    // Root mean square error of display values (0..1) over the channels, in rows from the bottom;
+    // -1 where there is no sample.
+    std::vector<float> rms = {};
+  };
+  // Divides a page of width x height texels into cells of `side` texels (> 0).
+  Cells cells(std::int32_t page, int width, int height, int side) const;
 
   Fidelity result() const;
 

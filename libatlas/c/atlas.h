@@ -105,7 +105,11 @@ typedef struct libatlas_mesh {
   size_t position_count, position_stride;
   const void* indices;  // 3 a triangle, into positions
   size_t index_count;
-  size_t index_bytes;     // 4, or 2 for indices of 16 bits
+  size_t index_bytes;  // 4, or 2 for indices of 16 bits
+  // 3 floats each, 1 a position: edges at which they differ become seams, as baked normal maps need
+  // them. Null: none do for that.
+  const void* normals;
+  size_t normal_stride;
   const void* texcoords;  // for keep_uvs: 2 floats each, 1 a position; or null
   size_t texcoord_count, texcoord_stride;
   // Where there is not one texcoord a position: index_count indices of index_bytes into them. An

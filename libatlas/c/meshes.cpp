@@ -9,6 +9,7 @@ StridedMesh strided_mesh(const libatlas_mesh& mesh) {
   StridedMesh strided{.positions = {mesh.positions, mesh.position_count, mesh.position_stride},
                       .indices = {mesh.indices, mesh.index_count, mesh.index_bytes},
                       .texcoords = {mesh.texcoords, mesh.texcoord_count, mesh.texcoord_stride}};
+  if (mesh.normals) strided.normals = {mesh.normals, mesh.position_count, mesh.normal_stride};
   if (mesh.texcoord_indices)
     strided.texcoord_indices = {mesh.texcoord_indices, mesh.index_count, mesh.index_bytes};
   if (mesh.materials) strided.materials = {mesh.materials, triangles};

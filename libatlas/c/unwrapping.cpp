@@ -37,7 +37,7 @@ libatlas_unwrap_options options_to_c(const UnwrapOptions& options) {
   c.mip_levels = options.mip_levels;
   c.alignment = options.alignment;
   c.charts = libatlas_preset(options.charts.preset);
-  c.packing = libatlas_preset(options.packing);
+  c.packing = libatlas_preset(options.preset);
   c.split_at_materials = options.charts.split_at_materials;
   c.keep_uvs = options.charts.keep_uv_charts;
   c.allow_rotation = options.allow_rotation;
@@ -62,7 +62,7 @@ UnwrapOptions from_c(const libatlas_unwrap_options& c) {
   options.padding = c.padding;
   options.mip_levels = c.mip_levels;
   options.alignment = c.alignment;
-  options.packing = PackPreset(c.packing);
+  options.preset = PackPreset(c.packing);
   options.allow_rotation = c.allow_rotation != 0;
   options.square = c.square != 0;
   options.part_gaps = c.part_gaps != 0;

@@ -84,7 +84,7 @@ struct Chart {
 struct ChartSet {
   std::vector<Chart> charts = {};
   std::vector<std::uint32_t> triangle_chart = {};   // 1 a triangle
-  std::vector<std::uint32_t> chart_triangles = {};  // triangles sorted by chart, then by id
+  std::vector<std::uint32_t> chart_triangles = {};  // by chart; then as make_charts() orders
   std::vector<Vec2d> uvs = {};                      // sorted by chart
   // 1 a uv: a vertex at its position (or 10^-12 off). Of several vertices at one place, which may
   // differ in normals and the like, this is any: take attributes by the corner's own index.
@@ -125,10 +125,10 @@ struct ChartSet {
 };
 
 // Cuts the mesh into charts and flattens them. Geometry is scale- and translation-free; the result
-// is the same for every thread count. Sources: Barladian et al., stage 1 (normal cones); Sander et
-// al. 2001 (stretch); see docs/charts-method.md. Errors: bad_option, see check_options();
-// bad_input where there is no triangle, an index is out of range, a position or a density is not
-// usable, or an array has the wrong length; unsupported beyond 2^30 triangles; cancelled.
+// is the same for every thread count and order of triangles. Sources: Barladian et al., stage 1
+// (normal cones); Sander et al. 2001 (stretch); docs/charts-method.md. Errors: bad_option,
+// see check_options(); bad_input: no triangle, an index out of range, a position or density not
+// usable, an array of the wrong length; unsupported: beyond 2^30 triangles; cancelled.
 Result<ChartSet> make_charts(const MeshView& mesh, const ChartOptions& options,
                              const Context& context);
 

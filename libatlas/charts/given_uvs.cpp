@@ -22,7 +22,7 @@ namespace {
 
 // Triangles of a smaller altitude, relative to the square root of the chart's area, may be flipped
 // by the rounding of what is written.
-constexpr double kMinAltitude = 1e-7;
+constexpr double kMinGivenAltitude = 1e-7;
 
 // A chart whose uvs, with its surface's area, are longer than this multiple of its border is
 // flattened anew: squares squeezed by more than 4096, as by projections seen edge-on, and charts
@@ -56,7 +56,7 @@ class GivenChart {
     place(std::sqrt(surface / uv_area), flat);
     if (flat.size.x > kMaxLength * std::max(border_length_, std::sqrt(surface)))
       return Verdict::bad;
-    const InjectivityOptions safe{.clearance = kMinAltitude * std::sqrt(surface)};
+    const InjectivityOptions safe{.clearance = kMinGivenAltitude * std::sqrt(surface)};
     const Injectivity check = check_injectivity(mesh, uvs_, safe);
     const auto has_area = [&](std::uint32_t i) { return !input_.topology.thin(triangles[i]); };
     if (!check.injective || std::any_of(check.thin.begin(), check.thin.end(), has_area))

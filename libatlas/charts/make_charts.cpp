@@ -219,7 +219,8 @@ class Assembler {
       }
     }
     const auto id = static_cast<std::uint32_t>(set_.charts.size());
-    const std::uint32_t vertex = topology_.source_vertex[topology_.corner_vertex[3 * t]];
+    const std::uint32_t vertex =
+        topology_.source_vertex[topology_.corner_vertex[3 * std::size_t{t}]];
     const auto [known, added] = first_alike_.emplace(object_and_material(vertex, material(t)), id);
     if (!added) return known->second;
     Chart chart;  // a single point
@@ -229,7 +230,7 @@ class Assembler {
     chart.axis = {0, 0, 1};
     chart.planar_projection = true;
     set_.uvs.push_back({});
-    set_.uv_vertex.push_back(topology_.source_vertex[topology_.corner_vertex[3 * std::size_t{t}]]);
+    set_.uv_vertex.push_back(vertex);
     set_.charts.push_back(chart);
     return id;
   }
@@ -348,12 +349,7 @@ Result<ChartSet> make_charts(const MeshView& mesh, const ChartOptions& options,
   given.density = relative.values;
   CanonicalMesh canonical = canonical_mesh(given, *welded);
   welded = WeldedVertices{};
-  given.positions = {};
-  given.indices = canonical.indices;
-  given.materials = canonical.materials;
-  given.density = canonical.density;
-  given.texcoord_indices = canonical.texcoord_indices;
-  given.seams = canonical.seams;
+  given = canonical.view(given.texcoords);
   Result<Topology> built = build_topology(
       {given, std::move(canonical.places), std::move(canonical.opposite)},
       {options.split_at_materials, options.keep_uv_charts, uv_aspects(options)}, context);

@@ -11,6 +11,7 @@
 
 #include "libatlas/core/leftovers.h"
 #include "libatlas/core/links.h"
+#include "libatlas/core/replace_files.h"
 #include "libatlas/core/write_error.h"
 
 namespace atlas {
@@ -55,7 +56,10 @@ fs::path AtomicFiles::path_for(const fs::path& name) {
   const fs::path target = end_of_links(name), folder = target.parent_path();
   // Links without an end stay as they are, since opening them fails.
   const bool in_place = is_special(target) || links_have_no_end(target);
-  if (entries_.empty() || entries_.back().target.parent_path() != folder) remove_leftovers(folder);
+  if (entries_.empty() || entries_.back().target.parent_path() != folder) {
+    if (Status s = undo_interrupted(folder); !s.ok()) interrupted_ = s;
+    remove_leftovers(folder);
+  }
   const fs::path temporary = in_place ? target : name_beside(target, "part");
   entries_.push_back({temporary, target, name});
   return temporary;
@@ -87,40 +91,15 @@ std::vector<fs::path> AtomicFiles::targets() const {
   return paths;
 }
 
-Status AtomicFiles::put_in_place(Entry& entry) {
-  std::error_code error;
-  if (entry.temporary == entry.target) return {};
-  const fs::path before = name_beside(entry.target, "before");
-  fs::create_hard_link(entry.target, before, error);
-  if (!error) entry.before = before;
-  fs::rename(entry.temporary, entry.target, error);
-  if (!error) return {};
-  return {ErrorCode::io,
-          fmt::format("{}: cannot be put in place: {}", entry.name.string(), error.message())};
-}
-
-void AtomicFiles::take_back(Entry& entry) {
-  std::error_code ignored;  // there is nothing more to be done
-  if (entry.temporary == entry.target) return;
-  if (entry.before.empty()) {
-    fs::remove(entry.target, ignored);
-  } else {
-    fs::rename(entry.before, entry.target, ignored);
+Status AtomicFiles::commit(bool durable) {
+  if (!interrupted_.ok()) return interrupted_;
+  std::vector<Replacement> files;
+  for (const Entry& entry : entries_) {
+    if (entry.temporary == entry.target) continue;
+    files.push_back(
+        {entry.temporary, entry.target, name_beside(entry.target, "before"), entry.name.string()});
   }
-  entry.before.clear();
-}
-
-Status AtomicFiles::commit() {
-  std::error_code ignored;
-  Status status;
-  std::size_t placed = 0;
-  while (placed < entries_.size() && (status = put_in_place(entries_[placed])).ok()) ++placed;
-  if (!status.ok()) {
-    fs::remove(entries_[placed].before, ignored);
-    while (placed > 0) take_back(entries_[--placed]);
-    return status;
-  }
-  for (const Entry& entry : entries_) fs::remove(entry.before, ignored);
+  if (Status s = replace_files(files, durable); !s.ok()) return s;
   entries_.clear();
   return {};
 }

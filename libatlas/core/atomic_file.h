@@ -1,7 +1,9 @@
 // Output files that are either whole or absent, however the process ends: each is written under a
-// temporary name beside its target, and renamed on commit or removed otherwise. After a power
-// failure or a crash of the machine, the file system determines what is left: the library does not
-// wait for the disk (no fsync), which would take about 4 milliseconds per file.
+// temporary name beside its target, and renamed on commit or removed otherwise. If the process is
+// killed between two renames, the next AtomicFiles in that folder puts back what was replaced.
+// After a power failure or a crash of the machine, the file system determines what is left, unless
+// the commit is durable: by default the library does not wait for the disk (no fsync), which would
+// take about 4 milliseconds per file.
 #pragma once
 
 #include <filesystem>
@@ -14,8 +16,8 @@ namespace atlas {
 
 // Collects the files of one export. path_for() returns the path to write each file to; commit()
 // renames them all to their targets, in the order of the path_for() calls; the destructor removes
-// the files that were not committed. An object is for one thread. Others may write to the same
-// targets meanwhile: the last commit wins.
+// the files that were not committed. An object is for one thread. Others, also of other processes,
+// may write to the same targets meanwhile: the last commit wins with all of its files.
 class AtomicFiles {
  public:
   AtomicFiles() = default;
@@ -26,8 +28,8 @@ class AtomicFiles {
   // Returns the temporary path to which `target` is to be written. It keeps the extension, since
   // some writers choose the format by it. Symbolic links are followed: the file that they lead to
   // is replaced or created, and they stay. If a file cannot replace the target (a device, a pipe),
-  // the target itself is returned and so written directly. Also removes the temporary files that
-  // killed processes have left in the target's folder.
+  // the target itself is returned and so written directly. Also puts back what killed processes
+  // have replaced in the target's folder, and removes the temporary files that they have left.
   std::filesystem::path path_for(const std::filesystem::path& target);
 
   // Writes `bytes` to the temporary file of `target`. Errors: io; the message names the target.
@@ -43,18 +45,16 @@ class AtomicFiles {
   std::vector<std::filesystem::path> targets() const;
 
   // Renames every file to its target. On failure, the targets that this call had already replaced
-  // get their previous files back (only on file systems with hard links; on others the targets are
-  // gone), and the destructor removes the other temporary files. Errors: io.
-  Status commit();
+  // get their previous files back, and the destructor removes the other temporary files. With
+  // `durable`, the disk holds files and folders before the call returns. Errors: io.
+  Status commit(bool durable = false);
 
  private:
   struct Entry {
     std::filesystem::path temporary, target, name;  // name: the target as the caller gave it
-    std::filesystem::path before = {};              // a hard link to the replaced file, or empty
   };
-  static Status put_in_place(Entry& entry);
-  static void take_back(Entry& entry);
   std::vector<Entry> entries_;
+  Status interrupted_ = {};  // whether what killed processes have replaced was put back
 };
 
 // Checks that a file can be written at `target`, or where its links lead: the directory exists and

@@ -30,8 +30,9 @@ std::size_t addressable(std::size_t count) {
   return std::size_t(std::min<std::uint64_t>(count, room / 2 / kThread));
 }
 
-// Returns how many of `count` threads may start. It starts them to find out, and they end together.
-std::size_t startable(std::size_t count) {
+}  // namespace
+
+std::size_t startable_threads(std::size_t count) {
   std::vector<std::thread> threads;
   threads.reserve(count);
   std::promise<void> all_started;
@@ -43,18 +44,17 @@ std::size_t startable(std::size_t count) {
   }
   all_started.set_value();
   for (std::thread& thread : threads) thread.join();
-  // Where not all can start, some remain for others.
-  return threads.size() < count ? threads.size() / 2 : count;
+  return threads.size();
 }
-
-}  // namespace
 
 std::size_t granted_threads(std::size_t wanted) {
   static std::mutex one_at_a_time;
   static std::size_t most = 1;
   const std::lock_guard lock(one_at_a_time);
   if (wanted <= most) return wanted;
-  most = std::max(most, 1 + startable(addressable(wanted - 1)));
+  const std::size_t others = addressable(wanted - 1), started = startable_threads(others);
+  // Where not all can start, some remain for others.
+  most = std::max(most, 1 + (started < others ? started / 2 : started));
   return std::min(most, wanted);
 }
 

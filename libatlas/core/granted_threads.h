@@ -11,4 +11,8 @@ namespace atlas {
 // program. Threads are started to find out, but only for a number larger than any granted before.
 std::size_t granted_threads(std::size_t wanted);
 
+// Returns how many of `count` further threads can start. It starts them to find out, and they end
+// together.
+std::size_t startable_threads(std::size_t count);
+
 }  // namespace atlas

@@ -48,10 +48,9 @@ bool is_leftover(std::string_view name) {
       std::from_chars(name.data() + at + before_number.size(), end, process);
   if (error != std::errc() || process <= 0) return false;
   const std::string_view rest(after, static_cast<std::size_t>(end - after));
-  for (const std::string_view kind : {".part", ".before"})
-    if (rest == kind || (rest.starts_with(kind) && rest[kind.size()] == '.'))
-      return has_ended(process);
-  return false;
+  constexpr std::string_view kKind = ".part";
+  if (rest != kKind && (!rest.starts_with(kKind) || rest[kKind.size()] != '.')) return false;
+  return has_ended(process);
 }
 
 }  // namespace

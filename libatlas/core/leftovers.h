@@ -11,9 +11,9 @@ namespace atlas {
 // (container) that the process runs in; the second is its process number there.
 std::string process_mark();
 
-// Removes the files of `folder` whose names contain ".MARK.part" or ".MARK.before", where MARK is
-// the mark of a process that has ended. Files of another boot or namespace stay, because it is not
-// possible to find out whether their processes have ended.
+// Removes the files of `folder` whose names contain ".MARK.part", where MARK is the mark of a
+// process that has ended. Files of another boot or namespace stay, because it is not possible to
+// find out whether their processes have ended.
 void remove_leftovers(const std::filesystem::path& folder);
 
 }  // namespace atlas

@@ -1,6 +1,6 @@
-// Parallel loops (by oneTBB, which only the .cpp includes) whose results do not depend on the
-// number of threads: `grain` alone determines how the range is divided into chunks, and chunks
-// write to disjoint outputs.
+// Parallel loops (by oneTBB where it was found, else by threads of our own) whose results do not
+// depend on the number of threads: `grain` alone determines how the range is divided into chunks,
+// and chunks write to disjoint outputs.
 #pragma once
 
 #include <cstddef>
@@ -17,8 +17,8 @@ namespace atlas {
 void parallel_for(const Context& context, std::size_t n, std::size_t grain,
                   const std::function<void(std::size_t begin, std::size_t end)>& body);
 
-// Gives up what the calling thread keeps for its loops, so that tbb::finalize() can end TBB's
-// threads: for programs that fork. Must not be called within a loop. Later loops begin anew.
+// Gives up what the calling thread keeps for its loops: threads of our own end, and tbb::finalize()
+// can end TBB's. For programs that fork. Must not be called within a loop. Later loops begin anew.
 void release_threads();
 
 // Returns the number of threads that a context gets, at least 1: the machine's number if the

@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "libatlas/core/is_enumerator.h"
 #include "libatlas/core/is_finite.h"
@@ -43,6 +44,18 @@ Status check_indices(std::size_t page, const char* list, const std::vector<std::
     if (indices[i] < count) continue;
     return wrong(
         fmt::format("page {}: {}[{}] is {}, but there are {}", page, list, i, indices[i], count));
+  }
+  return {};
+}
+
+// Checks what has one value per triangle or none.
+Status check_triangle_lists(std::size_t number, const Page& page) {
+  const std::size_t triangles = page.indices.size() / 3;
+  for (const auto& [list, size] :
+       {std::pair("one_sided", page.one_sided.size()), std::pair("charts", page.charts.size())}) {
+    if (size != 0 && size != triangles)
+      return wrong(
+          fmt::format("page {} has {} values {} for {} triangles", number, size, list, triangles));
   }
   return {};
 }
@@ -108,12 +121,15 @@ Status check_world(const World& world) {
     }
     Status s = check_indices(i, "indices", page.indices, world.positions.size());
     if (s.ok()) s = check_indices(i, "uv_indices", page.uv_indices, world.uvs.size());
+    if (s.ok()) s = check_triangle_lists(i, page);
     if (!s.ok()) return s;
-    if (!page.one_sided.empty() && page.one_sided.size() != page.indices.size() / 3) {
-      return wrong(fmt::format("page {} has {} values one_sided for {} triangles", i,
-                               page.one_sided.size(), page.indices.size() / 3));
-    }
+    if (!page.error.empty() &&
+        (page.error_columns == 0 || page.error.size() % page.error_columns != 0))
+      return wrong(fmt::format("page {} has {} cells of its error in rows of {}", i,
+                               page.error.size(), page.error_columns));
   }
+  if (world.light && world.light->curves.empty())
+    return wrong("its pages hold light, but no curve shows it");
   if (world.lightmap && !world.scene) return wrong("it has a lightmap, but no scene to keep");
   return world.scene ? check_kept_scene(world) : Status();
 }

@@ -31,14 +31,39 @@ struct Viewpoint {
 
 struct Page {
   std::string image = {};  // file name beside the world, see safe_file_name(); empty: no texture
-  // Path of the finished image while the world is written, .png or, in glTF, .webp. Only .glb needs
-  // it, to embed the image.
+  // Path of the finished image while the world is written, .png or, in glTF and .html, .webp. Only
+  // .glb and .html need it, to embed the image.
   std::filesystem::path image_source = {};
   std::vector<std::uint32_t> indices = {};     // 3 per triangle, into World::positions
   std::vector<std::uint32_t> uv_indices = {};  // 3 per triangle, into World::uvs
   // 1 per triangle, or empty: whether it is seen from its front only, where its corners run
   // counter-clockwise. All others are seen from both sides. OBJ cannot tell them apart.
   std::vector<bool> one_sided = {};
+  // Only .html shows the following. The chart of each triangle, or empty.
+  std::vector<std::uint32_t> charts = {};
+  // The root mean square error of display values, 0..1, in cells of equal size that divide the page
+  // into error_columns x rows, row 0 at the bottom; below 0 where it is unknown. Empty: not
+  // measured.
+  std::vector<float> error = {};
+  std::size_t error_columns = 0;
+};
+
+// One of the curves that show pages of light, as numbers of ToneMapping (texture/tone.h).
+struct ShownCurve {
+  std::string name = {};  // tone_operator_name()
+  double scale = 1, white = 1;
+  double parameter[4] = {0, 0, 0, 0};
+  double offset[3] = {0, 0, 0};
+};
+
+// What pages mean that hold the light itself (see html/light_page.h) instead of display values.
+struct PageLight {
+  // What the scene's vertices carry: "illuminance" (lx), then the pages hold it times the
+  // reflectance; "luminance" (cd/m²) or "colour", then the pages hold just that.
+  std::string quantity = {};
+  std::vector<ShownCurve> curves = {};  // at least one; the first is shown at the beginning
+  // Of each chart: its diffuse reflectance, or 0 where a texture or several materials vary it.
+  std::vector<Vec3f> reflectance = {};
 };
 
 // The pages with the light of a scene that is kept, addressed by the world's uvs.
@@ -82,6 +107,8 @@ struct World {
   // the page of a primitive, if there are several, as its extras.lightmap. OBJ names it in a
   // comment, and has only one page.
   std::optional<Lightmap> lightmap = {};
+  // Only .html: set if the pages' images are files of write_light_page().
+  std::optional<PageLight> light = {};
 };
 
 struct WorldFile {
@@ -156,6 +183,13 @@ Result<WorldFile> write_obj(const World& world, const std::filesystem::path& pat
 Result<WorldFile> write_gltf(const World& world, const std::filesystem::path& path,
                              AtomicFiles& files, const Context& context);
 
+// Writes a page of HTML that shows the world in a browser by itself: geometry, pages and viewer are
+// in this one file, which loads nothing. World::scene is refused (bad_option). Positions are
+// rounded to half a millimetre where the viewpoint is inside, else to a 65535th of the box; uvs to
+// a 32nd of a texel of 2048. docs/formats.md describes the data, which scripts can read as well.
+Result<WorldFile> write_html(const World& world, const std::filesystem::path& path,
+                             AtomicFiles& files, const Context& context);
+
 // Calls the writer for the extension of `path`. check_world_extension() refuses extensions that
 // have no writer (bad_option).
 Result<WorldFile> write_world(const World& world, const std::filesystem::path& path,
@@ -181,6 +215,9 @@ bool holds_viewpoint(const std::filesystem::path& path);
 
 // Returns whether a world of this extension holds its images itself: none is written beside it.
 bool embeds_images(const std::filesystem::path& path);
+
+// Returns whether a world of this extension can hold pages of light (World::light).
+bool holds_light(const std::filesystem::path& path);
 
 // Returns the file that is written beside the world besides images, .mtl or .bin; empty if there is
 // none.

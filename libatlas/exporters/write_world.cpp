@@ -37,12 +37,13 @@ std::filesystem::path buffer_beside(const std::filesystem::path& path) {
 }
 
 // A new format is one more line here.
-constexpr std::array<Format, 5> kFormats{
+constexpr std::array<Format, 6> kFormats{
     {{".wrl", write_vrml, true, false, false, false, nothing_beside},
      {".wrz", write_vrml, true, false, false, false, nothing_beside},
      {".obj", write_obj, false, true, false, false, materials_beside},
      {".gltf", write_gltf, true, true, false, true, buffer_beside},
-     {".glb", write_gltf, true, true, true, true, nothing_beside}}};
+     {".glb", write_gltf, true, true, true, true, nothing_beside},
+     {".html", write_html, true, false, true, true, nothing_beside}}};
 
 const Format* format_of(const std::filesystem::path& path) {
   const std::string extension = lower_extension(path);
@@ -83,6 +84,10 @@ bool holds_compressed(const std::filesystem::path& path) {
 bool embeds_images(const std::filesystem::path& path) {
   const Format* format = format_of(path);
   return format != nullptr && format->embeds;
+}
+
+bool holds_light(const std::filesystem::path& path) {
+  return lower_extension(path) == ".html";
 }
 
 std::filesystem::path file_beside(const std::filesystem::path& path) {

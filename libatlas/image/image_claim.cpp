@@ -13,7 +13,7 @@ namespace {
 using Bytes = std::span<const std::uint8_t>;
 
 // Readers of GIF look at no more of the signature than this.
-constexpr std::string_view kJpeg = "\xff\xd8", kGif = "GIF", kCodeStream = "\xff\x4f\xff\x51",
+constexpr std::string_view kGif = "GIF", kCodeStream = "\xff\x4f\xff\x51",
                            kExr = "\x76\x2f\x31\x01";
 constexpr double kHarmlessBytes = 64.0 * (1 << 20);
 
@@ -21,27 +21,6 @@ std::int64_t big_endian(Bytes bytes, std::size_t at, int count) {
   std::int64_t value = 0;
   for (int i = 0; i < count; ++i) value = value << 8 | bytes[at + std::size_t(i)];
   return value;
-}
-
-// Returns the size in the frame header, which follows segments that each state their length.
-std::optional<ImageClaim> jpeg_claim(Bytes b) {
-  for (std::size_t at = 2; at + 10 <= b.size();) {
-    if (b[at] != 0xff || b[at + 1] == 0xff) {  // fill bytes, and bytes that decoders skip
-      ++at;
-      continue;
-    }
-    const int marker = b[at + 1];
-    const bool frame =
-        marker >= 0xc0 && marker <= 0xcf && marker != 0xc4 && marker != 0xc8 && marker != 0xcc;
-    if (frame) {
-      ImageClaim claim{big_endian(b, at + 7, 2), big_endian(b, at + 5, 2), b[at + 9]};
-      claim.packing = kPackedByte;
-      return claim;
-    }
-    const bool bare = marker <= 1 || (marker >= 0xd0 && marker <= 0xd8);
-    at += bare ? 2 : 2 + std::size_t(std::max<std::int64_t>(big_endian(b, at + 2, 2), 2));
-  }
-  return {};
 }
 
 std::optional<ImageClaim> gif_claim(Bytes b) {
@@ -74,12 +53,10 @@ std::string size_text(double bytes) {
 }  // namespace
 
 bool takes_memory_to_open(Bytes head) {
-  return begins_with(head, kJpeg) || begins_with(head, kGif) || is_jpeg2000(head) ||
-         begins_with(head, kExr);
+  return begins_with(head, kGif) || is_jpeg2000(head) || begins_with(head, kExr);
 }
 
 std::optional<ImageClaim> claim_of(Bytes head) {
-  if (begins_with(head, kJpeg)) return jpeg_claim(head);
   if (begins_with(head, kGif)) return gif_claim(head);
   if (is_jpeg2000(head)) return jpeg2000_claim(head);
   return {};

@@ -29,7 +29,7 @@ constexpr double kPackedByte = 1032.0 * 8 * 4;
 constexpr double kFlatByte = 1 << 20;
 
 // Returns whether OpenImageIO allocates memory already when it opens a file of this format: the
-// image's (JPEG, GIF and JPEG-2000) or that of attributes (OpenEXR). What the file claims must be
+// image's (GIF and JPEG-2000) or that of attributes (OpenEXR). What the file claims must be
 // found before. `head` holds the first 64 bytes of the file.
 bool takes_memory_to_open(std::span<const std::uint8_t> head);
 

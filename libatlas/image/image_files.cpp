@@ -69,13 +69,6 @@ ImageClaim spec_claim(const OIIO::ImageInput& input) {
           flat ? kFlatByte : kPackedByte};
 }
 
-// Returns whether an image is damaged, judged by the message of a reader that reported success. Of
-// the JPEG reader's messages all but one are harmless.
-bool damaged(const OIIO::ImageInput& input, const std::string& complaint) {
-  if (std::string_view(input.format_name()) != "jpeg") return !complaint.empty();
-  return complaint.find("premature end") != std::string::npos;
-}
-
 template <class T>
 Result<Image<T>> read_pixels(const Source& source) {
   OIIO::ImageInput& input = *source.input;
@@ -98,10 +91,9 @@ Result<Image<T>> read_pixels(const Source& source) {
   T* top_row = image.texels.data() + std::size_t(spec.height - 1) * spec.width * spec.nchannels;
   const bool read =
       input.read_image(0, 0, 0, spec.nchannels, type_of<T>(), top_row, OIIO::AutoStride, -stride);
+  // Some readers report success, and that something was missing.
   const std::string complaint = input.geterror();
-  if (!read || damaged(input, complaint)) {
-    return failure(source.name, "image is damaged", complaint);
-  }
+  if (!read || !complaint.empty()) return failure(source.name, "image is damaged", complaint);
   if (other_part) return shown_part(image, spec);
   return image;
 }
@@ -142,22 +134,12 @@ std::vector<std::uint8_t> head_of(const std::filesystem::path& path, std::uint64
   return head;
 }
 
-// Returns the extension by which OpenImageIO picks its reader, judged by the signature at the
-// start; null if the format is not PNG, JPEG or WebP.
-const char* extension_of(std::span<const std::uint8_t> bytes) {
-  if (begins_with(bytes, "\x89PNG")) return ".png";
-  if (begins_with(bytes, "\xff\xd8")) return ".jpg";
-  if (begins_with(bytes, "RIFF")) return ".webp";
-  return nullptr;
-}
-
-// Opens an encoded image in memory. `memory` must outlive the result.
-std::unique_ptr<OIIO::ImageInput> open_bytes(OIIO::Filesystem::IOMemReader& memory,
-                                             const char* extension) {
+// Opens a WebP file in memory. `memory` must outlive the result.
+std::unique_ptr<OIIO::ImageInput> open_webp(OIIO::Filesystem::IOMemReader& memory) {
   OIIO::Filesystem::IOProxy* proxy = &memory;
   OIIO::ImageSpec config = input_settings();
   config.attribute("oiio:ioproxy", OIIO::TypeDesc::PTR, &proxy);
-  return OIIO::ImageInput::open(std::string("embedded") + extension, &config, proxy);
+  return OIIO::ImageInput::open("embedded.webp", &config, proxy);
 }
 
 // Returns whether a reader may have multiplied the colours by alpha though it was asked not to. Of
@@ -228,7 +210,7 @@ template <class T>
 Status restore_colors(std::span<const std::uint8_t> file, const Source& source, Image<T>& image) {
   const std::vector<std::uint8_t> opaque = without_webp_alpha(file);
   OIIO::Filesystem::IOMemReader memory(const_cast<std::uint8_t*>(opaque.data()), opaque.size());
-  Source copy{nullptr, open_bytes(memory, ".webp"), source.bytes, source.name};
+  Source copy{nullptr, open_webp(memory), source.bytes, source.name};
   if (!copy.input) return failure(source.name, "cannot be read as an image", OIIO::geterror());
   Result<Image<T>> colors = read_pixels<T>(copy);
   if (!colors.ok()) return colors.status();
@@ -278,11 +260,6 @@ Result<Source> open_file(const std::filesystem::path& path) {
 
 template <class T>
 Result<Image<T>> read(const std::filesystem::path& path) {
-  std::error_code error;
-  if (!std::filesystem::exists(path, error)) {
-    return error ? Status(ErrorCode::io, fmt::format("{}: {}", path.string(), error.message()))
-                 : Status(ErrorCode::not_found, fmt::format("{}: no such image", path.string()));
-  }
   return within_memory(path.string(), [&]() -> Result<Image<T>> {
     const Result<Source> source = open_file(path);
     if (!source.ok()) return source.status();
@@ -331,23 +308,20 @@ struct Target {
   std::unique_ptr<OIIO::ImageOutput> writer;
 };
 
-template <class T>
-Status encode(Target& to, const Image<T>& image, const OIIO::ImageSpec& spec) {
-  const T* top_row =
+Status encode(Target& to, const ImageF& image, const OIIO::ImageSpec& spec) {
+  const float* top_row =
       image.texels.data() + std::size_t(image.height - 1) * image.width * image.channels;
   if (!to.writer->set_ioproxy(&to.file) || !to.writer->open(to.path.string(), spec) ||
-      !to.writer->write_image(type_of<T>(), top_row, OIIO::AutoStride, -row_bytes(image)) ||
+      !to.writer->write_image(type_of<float>(), top_row, OIIO::AutoStride, -row_bytes(image)) ||
       !to.writer->close()) {
     return failure(to.path, "writing failed", to.writer->geterror());
   }
   return {};
 }
 
-// Writes a file of OpenImageIO's `format`, whatever the extension of its name is.
-template <class T>
-Status write(const std::filesystem::path& path, const Image<T>& image, const OIIO::ImageSpec& spec,
-             const char* format) {
-  auto writer = OIIO::ImageOutput::create(format);
+// Writes an OpenEXR file, whatever the extension of its name is.
+Status write(const std::filesystem::path& path, const ImageF& image, const OIIO::ImageSpec& spec) {
+  auto writer = OIIO::ImageOutput::create("openexr");
   if (!writer) return failure(path, "no writer for this kind of image", OIIO::geterror());
   std::FILE* file = std::fopen(path.c_str(), "wb");
   if (!file) return failure(path, "cannot be written", std::strerror(errno));
@@ -371,15 +345,10 @@ Result<Image8> read_8_bits(const std::filesystem::path& path) {
   return read<std::uint8_t>(path);
 }
 
-Result<Image8> decode(std::span<const std::uint8_t> bytes, const std::string& name) {
-  const char* extension = extension_of(bytes);
-  if (!extension) return failure(name, "cannot be read as an image", "not PNG, JPEG or WebP");
+Result<Image8> decode_webp(std::span<const std::uint8_t> bytes, const std::string& name) {
   OIIO::Filesystem::IOMemReader memory(const_cast<std::uint8_t*>(bytes.data()), bytes.size());
   return within_memory(name, [&]() -> Result<Image8> {
-    if (const auto claim = claim_of(bytes)) {
-      if (Status s = check_claim(*claim, bytes.size(), name); !s.ok()) return s;
-    }
-    Source source{nullptr, open_bytes(memory, extension), bytes.size(), name};
+    Source source{nullptr, open_webp(memory), bytes.size(), name};
     if (!source.input) return failure(name, "cannot be read as an image", OIIO::geterror());
     Result<Image8> image = read_pixels<std::uint8_t>(source);
     if (!image.ok() || !may_be_multiplied(*source.input)) return image;
@@ -401,19 +370,6 @@ bool has_floats(const std::filesystem::path& path) {
   return floats.ok() && *floats;
 }
 
-Status write_8_bits(const std::filesystem::path& path, const Image8& image,
-                    const PngOptions& options) {
-  OIIO::ImageSpec spec(image.width, image.height, image.channels, OIIO::TypeDesc::UINT8);
-  spec["png:compressionLevel"] = options.compression;
-  if (options.smooth && options.compression >= 1 && options.compression <= 5) {
-    constexpr int kPaeth = 128;  // PNG_FILTER_PAETH
-    spec["png:filter"] = kPaeth;
-    spec["compression"] = "rle";
-  }
-  spec["oiio:UnassociatedAlpha"] = 1;
-  return write(path, image, spec, "png");
-}
-
 // Returns whether half floats represent an image with at least ten bits for all values down to a
 // hundredth of its brightest one. Sunlight does not fit: 100 000 lux would become infinite.
 bool fits_halves(const ImageF& image) {
@@ -429,11 +385,11 @@ Status write_floats(const std::filesystem::path& path, const ImageF& image) {
   spec["compression"] = "zip";
   // Without this, it would be the time of writing; the same input must give the same bytes.
   spec["DateTime"] = "1970:01:01 00:00:00";
-  return write(path, image, spec, "openexr");
+  return write(path, image, spec);
 }
 
-constexpr ImageFiles functions = {image_files_mark(), read_8_bits,  decode,      read_floats,
-                                  has_floats,         write_8_bits, write_floats};
+constexpr ImageFiles functions = {image_files_mark(), read_8_bits, decode_webp,
+                                  read_floats,        has_floats,  write_floats};
 
 }  // namespace
 }  // namespace atlas

@@ -1,140 +1,115 @@
 #include "libatlas/image/image_io.h"
 
-#include <dlfcn.h>
 #include <fmt/format.h>
 
-#include <cstddef>
+#include <algorithm>
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
 #include <memory>
+#include <new>
+#include <string_view>
 #include <system_error>
+#include <type_traits>
 #include <utility>
-#include <vector>
 
 #include "libatlas/core/srgb.h"
-#include "libatlas/image/image_files.h"
+#include "libatlas/core/write_error.h"
+#include "libatlas/image/encoded_image.h"
+#include "libatlas/image/file_kind.h"
+#include "libatlas/image/image_module.h"
+#include "libatlas/image/jpeg_file.h"
+#include "libatlas/image/png_file.h"
 
 namespace atlas {
 namespace {
 
 namespace fs = std::filesystem;
 
-// Returns the file that this code was linked into: a shared library or the program.
-fs::path own_file() {
-  Dl_info own{};
-  const bool known = dladdr(reinterpret_cast<const void*>(&own_file), &own) != 0 && own.dli_fname;
-  return known ? fs::path(own.dli_fname) : fs::path();
+// The formats that are read here, by the first bytes of their files. The module reads all others.
+struct Reader {
+  std::string_view signature;
+  Result<Image8> (*read8)(const EncodedImage&);
+  Result<ImageF> (*read_float)(const EncodedImage&);
+};
+constexpr Reader kReaders[] = {{"\x89PNG", read_png8, read_png_float},
+                               {"\xff\xd8", read_jpeg8, read_jpeg_float}};
+
+const Reader* reader_of(std::span<const std::uint8_t> head) {
+  for (const Reader& reader : kReaders)
+    if (begins_with(head, reader.signature)) return &reader;
+  return nullptr;
 }
 
-// Returns the folder where the module was built if `file` lies in the same build tree, else an
-// empty path, so that an installed program never loads a module that a builder has left. The tree
-// is found from the file on, so that no path of the builder's machine becomes part of the library.
-fs::path built_folder(const fs::path& file) {
-  std::error_code none;
-  for (fs::path up = fs::canonical(file, none).parent_path(); up.has_relative_path();
-       up = up.parent_path()) {
-    if (fs::exists(up / "CMakeCache.txt", none)) return up / LIBATLAS_BUILT_IN;
-  }
-  return {};
-}
+struct Closer {
+  void operator()(std::FILE* file) const { std::fclose(file); }
+};
+using File = std::unique_ptr<std::FILE, Closer>;
 
-// Returns where the system looks for the libraries of the program, which its run path names, too.
-// dlopen() by itself would look along the run path of the code that calls it, and with a sanitizer
-// that is the sanitizer.
-std::vector<fs::path> library_folders() {
-  std::vector<fs::path> folders;
-  void* const program = dlopen(nullptr, RTLD_LAZY);
-  Dl_serinfo size{};
-  if (!program || dlinfo(program, RTLD_DI_SERINFOSIZE, &size) != 0) return folders;
-  const auto words = size.dls_size / sizeof(std::max_align_t) + 1;
-  const auto room = std::make_unique<std::max_align_t[]>(words);
-  auto* const found = reinterpret_cast<Dl_serinfo*>(room.get());
-  if (dlinfo(program, RTLD_DI_SERINFOSIZE, found) != 0 ||
-      dlinfo(program, RTLD_DI_SERINFO, found) != 0)
-    return folders;
-  for (unsigned i = 0; i < found->dls_cnt; ++i)
-    folders.emplace_back(found->dls_serpath[i].dls_name);
-  return folders;
-}
-
-// Returns the folders where the module may be: beside the file that this code was linked into and
-// beside the program; in the lib/ next to the folder of either; where the module was built; where
-// it was to be installed; where the program's libraries are.
-std::vector<fs::path> module_folders() {
-  std::error_code none;
-  std::vector<fs::path> folders;
-  const std::vector<fs::path> files = {own_file(), fs::read_symlink("/proc/self/exe", none)};
-  for (const fs::path& file : files) {
-    if (!file.has_parent_path()) continue;
-    folders.push_back(file.parent_path());
-    folders.push_back(file.parent_path() / ".." / LIBATLAS_LIBRARY_FOLDER);
-  }
-  for (const fs::path& file : files)
-    if (const fs::path built = built_folder(file); !built.empty()) folders.push_back(built);
-  folders.push_back(LIBATLAS_INSTALL_FOLDER);
-  for (fs::path& folder : library_folders()) folders.push_back(std::move(folder));
-  return folders;
-}
-
-struct Module {
-  const ImageFiles* functions = nullptr;
-  std::string why_not;
+// A file to read, and what reads it: null if that is the module.
+struct Source {
+  File file = {};
+  const Reader* reader = nullptr;
+  std::uint64_t bytes = 0;
 };
 
-Module failure() {
-  const char* reason = dlerror();
-  // What the loader says if memory is limited.
-  const std::string_view said = reason ? reason : "";
-  for (const std::string_view short_of_memory :
-       {"failed to map segment", "annot allocate memory", "cannot map"}) {
-    if (said.find(short_of_memory) == std::string_view::npos) continue;
-    return {nullptr, fmt::format("not enough memory to load {} ({})", LIBATLAS_IMAGE_MODULE, said)};
+Result<Source> open_image(const fs::path& path) {
+  std::error_code error;
+  if (!fs::exists(path, error)) {
+    return error ? Status(ErrorCode::io, fmt::format("{}: {}", path.string(), error.message()))
+                 : Status(ErrorCode::not_found, fmt::format("{}: no such image", path.string()));
   }
-  return {nullptr,
-          fmt::format("image files need {}, which belongs beside the program or into its ../{}: {}",
-                      LIBATLAS_IMAGE_MODULE, LIBATLAS_LIBRARY_FOLDER, reason ? reason : "damaged")};
+  const auto failure = [&](const std::string& why) {
+    return Status(ErrorCode::io,
+                  fmt::format("{}: cannot be read as an image: {}", path.string(), why));
+  };
+  Source source;
+  source.bytes = fs::file_size(path, error);  // of regular files only: others could keep us waiting
+  if (error) return failure(error.message());
+  source.file.reset(std::fopen(path.c_str(), "rb"));
+  if (!source.file) return failure(std::strerror(errno));
+  std::uint8_t head[8];
+  const std::size_t read = std::fread(head, 1, sizeof head, source.file.get());
+  source.reader = reader_of({head, read});
+  std::rewind(source.file.get());
+  return source;
 }
 
-Module load() {
-  void* handle = nullptr;
-  std::error_code none;
-  for (const fs::path& folder : module_folders()) {
-    const fs::path file = fs::absolute(folder / LIBATLAS_IMAGE_MODULE, none);
-    if (handle || !fs::exists(file, none)) continue;
-    handle = dlopen(file.c_str(), RTLD_NOW | RTLD_LOCAL);
-    if (!handle) return failure();
+template <class T>
+Result<Image<T>> read_with(const Reader& reader, const EncodedImage& source) {
+  try {
+    if constexpr (std::is_same_v<T, float>)
+      return reader.read_float(source);
+    else
+      return reader.read8(source);
+  } catch (const std::bad_alloc&) {
+    return Status(ErrorCode::io,
+                  source.name + ": not enough memory to read it: make the image smaller");
   }
-  // Otherwise the system searches its list of libraries, too.
-  if (!handle) handle = dlopen(LIBATLAS_IMAGE_MODULE, RTLD_NOW | RTLD_LOCAL);
-  void* entry = handle ? dlsym(handle, "libatlas_image_files") : nullptr;
-  if (!entry) return failure();
-  const ImageFiles* files = reinterpret_cast<decltype(&libatlas_image_files)>(entry)();
-  if (files->mark == image_files_mark()) return {files, {}};
-  Dl_info where{};
-  const bool known = dladdr(entry, &where) != 0 && where.dli_fname;
-  return {nullptr,
-          fmt::format("image files need the {} that was built with this program; {} is "
-                      "of another build (install both from one)",
-                      LIBATLAS_IMAGE_MODULE, known ? where.dli_fname : "the one that was found")};
-}
-
-// Returns the module. It is loaded once and never unloaded, because OpenImageIO has threads.
-const Module& module() {
-  static const Module loaded = load();
-  return loaded;
 }
 
 // Calls the module's function, or returns the reason why there is no module.
 template <class Function, class... Arguments>
 auto call(Function ImageFiles::*function, const std::string& name, Arguments&&... arguments)
     -> decltype((std::declval<ImageFiles>().*function)(arguments...)) {
-  const Module& files = module();
+  const ImageModule& files = image_module();
   if (!files.functions) {
     return Status(ErrorCode::unsupported, fmt::format("{}: {}", name, files.why_not));
   }
   return (files.functions->*function)(std::forward<Arguments>(arguments)...);
 }
 
+template <class T>
+Result<Image<T>> read(const fs::path& path,
+                      Result<Image<T>> (*ImageFiles::*by_module)(const fs::path&)) {
+  const Result<Source> source = open_image(path);
+  if (!source.ok()) return source.status();
+  if (!source->reader) return call(by_module, path.string(), path);
+  return read_with<T>(*source->reader, {source->file.get(), source->bytes, path.string()});
+}
+
 // Refuses an image whose sides or channels are out of range, or whose texels are not as many as
-// these say: the module would read past the end of a shorter one.
+// these say: a writer would read past the end of a shorter one.
 template <class T>
 Status check_image(const fs::path& path, const Image<T>& image, int most_channels) {
   const std::string sizes = fmt::format("{}: the image is {} x {} with {} channels", path.string(),
@@ -167,28 +142,39 @@ TextureImage encoded(const ImageF& linear) {
 }
 
 bool holds_floats(const fs::path& path) {
-  const Module& files = module();
+  const Result<Source> source = open_image(path);
+  if (!source.ok() || source->reader) return false;
+  const ImageModule& files = image_module();
   return files.functions && files.functions->holds_floats(path);
 }
 
 }  // namespace
 
 Status check_image_module(const std::string& name) {
-  const Module& files = module();
+  const ImageModule& files = image_module();
   if (files.functions) return {};
   return {ErrorCode::unsupported, fmt::format("{}: {}", name, files.why_not)};
 }
 
 Result<Image8> read_image8(const fs::path& path) {
-  return call(&ImageFiles::read_image8, path.string(), path);
+  return read(path, &ImageFiles::read_image8);
 }
 
 Result<Image8> decode_image8(std::span<const std::uint8_t> bytes, const std::string& name) {
-  return call(&ImageFiles::decode_image8, name, bytes, name);
+  const auto failure = [&](const char* why) {
+    return Status(ErrorCode::io, fmt::format("{}: cannot be read as an image: {}", name, why));
+  };
+  if (begins_with(bytes, "RIFF")) return call(&ImageFiles::decode_webp8, name, bytes, name);
+  const Reader* const reader = reader_of(bytes);
+  if (!reader) return failure("not PNG, JPEG or WebP");
+  auto* const memory = const_cast<std::uint8_t*>(bytes.data());  // which is only read
+  const File file(::fmemopen(memory, bytes.size(), "rb"));
+  if (!file) return failure(std::strerror(errno));
+  return read_with<std::uint8_t>(*reader, {file.get(), bytes.size(), name});
 }
 
 Result<ImageF> read_image_float(const fs::path& path) {
-  return call(&ImageFiles::read_image_float, path.string(), path);
+  return read(path, &ImageFiles::read_image_float);
 }
 
 Result<TextureImage> read_texture(const fs::path& path) {
@@ -207,7 +193,15 @@ Status write_png(const fs::path& path, const Image8& image, const PngOptions& op
     return {ErrorCode::bad_option, fmt::format("{}: compression {} is not a zlib level, 0 to 9",
                                                path.string(), options.compression)};
   if (Status s = check_image(path, image, 4); !s.ok()) return s;
-  return call(&ImageFiles::write_png, path.string(), path, image, options);
+  File file(std::fopen(path.c_str(), "wb"));
+  if (!file)
+    return {ErrorCode::io,
+            fmt::format("{}: cannot be written: {}", path.string(), std::strerror(errno))};
+  if (Status s = encode_png(file.get(), path.string(), image, options); !s.ok()) return s;
+  if (std::fclose(file.release()) != 0)
+    return {ErrorCode::io,
+            fmt::format("{}: writing failed: {}", path.string(), write_error(errno))};
+  return {};
 }
 
 Status write_exr(const fs::path& path, const ImageF& image) {

@@ -1,6 +1,6 @@
 // Reads and writes image files. Rows are bottom-up in memory (core/image.h), and their order is
-// reversed here. The first call loads the module that does the work; without the module, calls
-// return ErrorCode::unsupported. Other errors: not_found, io (the file is no image or is damaged),
+// reversed here. The first call for a file that is neither PNG nor JPEG loads a module that does the
+// work; without the module, such calls return ErrorCode::unsupported. Other errors: not_found, io (the file is no image or is damaged),
 // bad_input (the file claims a larger image than it can hold; the image to write is not as large as
 // its sides say), unsupported (the image takes more than 4 GiB or is a volume), bad_option. Every
 // function may be called from several threads at once.
@@ -16,12 +16,12 @@
 
 namespace atlas {
 
-// Loads the module. To be called before long work that ends with images, so that the work is not in
-// vain. `name` is the file that needs it, for the message. Errors: unsupported.
+// Loads the module. To be called before long work that ends with images other than PNG, so that the
+// work is not in vain. `name` is the file that needs it, for the message. Errors: unsupported.
 Status check_image_module(const std::string& name);
 
 // Reads any format that OpenImageIO supports as 8-bit values, with all channels and without colour
-// conversion (an sRGB file stays sRGB-encoded). Colours are not multiplied by alpha: those that a
+// conversion (an sRGB file stays sRGB-encoded), except that CMYK becomes RGB. Colours are not multiplied by alpha: those that a
 // TIFF says are so, and all of OpenEXR files with an alpha as their last channel, are divided by
 // it, except where it is 0. Of OpenEXR files, the display window is read; texels of it that the
 // file does not hold are 0.

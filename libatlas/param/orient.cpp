@@ -74,15 +74,15 @@ std::vector<Vec2d> outline(std::span<const Vec2d> uvs,
   return points;
 }
 
-using Box = Bounds<glm::dvec2>;
+using UvBox = Bounds<glm::dvec2>;
 
-double area_of(const Box& box) {
+double area_of(const UvBox& box) {
   return box.size().x * box.size().y;
 }
 
 // Returns the box of the points in the frame whose first axis is the unit vector d.
-Box box_along(std::span<const Vec2d> points, glm::dvec2 d) {
-  Box box;
+UvBox box_along(std::span<const Vec2d> points, glm::dvec2 d) {
+  UvBox box;
   for (const Vec2d p : points) box.add({d.x * p.x + d.y * p.y, d.x * p.y - d.y * p.x});
   return box;
 }
@@ -184,10 +184,10 @@ Orientation orient_for_packing(std::span<Vec2d> uvs,
   if (uvs.empty()) return out;
   const std::vector<Vec2d> hull = convex_hull(outline(uvs, border_edges));
   glm::dvec2 d = smallest_box(hull);
-  Box box = box_along(hull, d);
+  UvBox box = box_along(hull, d);
   glm::dvec2 straight;
   if (straight_direction(border_directions(uvs, border_edges), &straight)) {
-    const Box other = box_along(hull, straight);
+    const UvBox other = box_along(hull, straight);
     if (area_of(other) <= area_of(box) * (1 + straight_slack)) {
       d = straight;
       box = other;

@@ -20,6 +20,7 @@ World assemble_world(const Scene& scene, const PlacedCharts& placed, const World
     page.indices.insert(page.indices.end(), &mesh.indices[3 * t], &mesh.indices[3 * t] + 3);
     page.uv_indices.insert(page.uv_indices.end(), &mesh.uv_indices[3 * t],
                            &mesh.uv_indices[3 * t] + 3);
+    page.charts.push_back(mesh.triangle_chart[t]);
     if (!mesh.one_sided.empty()) page.one_sided.push_back(mesh.one_sided[t]);
   }
   return world;

@@ -14,6 +14,7 @@
 #include "libatlas/core/clock.h"
 #include "libatlas/core/parallel.h"
 #include "libatlas/core/write_error.h"
+#include "libatlas/exporters/html/light_page.h"
 #include "libatlas/exporters/world.h"
 #include "libatlas/image/image_io.h"
 #include "libatlas/image/webp.h"
@@ -53,6 +54,8 @@ double psnr_of(const Image8& a, const Image8& b) {
 // The pages that are baked at once take at most this many bytes together, and so do those that wait
 // to be written. A single page may take more.
 constexpr std::size_t kBytesAtOnce = std::size_t{256} << 20;
+
+constexpr int kErrorCell = 32;  // texels
 
 class PageBaker {
  public:
@@ -94,6 +97,13 @@ class PageBaker {
   }
 
  private:
+  // A page, and its file if that is WebP. A lossy one shows what its file does.
+  struct FinishedPage {
+    BakedPage page = {};
+    std::vector<std::uint8_t> webp = {};
+    std::optional<double> psnr = {};
+  };
+
   Status draw_samples() {
     if (!options_.measure_error) return {};
     const BookedTime cpu_watch(own_cpu_seconds, result_.measure_cpu);
@@ -104,6 +114,8 @@ class PageBaker {
     return {};
   }
 
+  bool floats() const { return options_.exr || options_.linear; }
+
   // Returns whether the caller's thread writes images, instead of threads in the background.
   bool writes_itself() const { return pages_.size() < 2 || context_.threads == 1; }
 
@@ -111,7 +123,7 @@ class PageBaker {
   // of threads if memory allows, because a page may hold a single chart, which occupies one thread.
   std::size_t pages_at_once() const {
     if (writes_itself()) return 1;
-    const std::size_t texel = options_.exr ? 3 + 3 * sizeof(float) : 3;
+    const std::size_t texel = floats() ? 3 + 3 * sizeof(float) : 3;
     std::size_t largest = 1;  // texels of a page
     for (const auto& page : layout_.pages)
       largest = std::max(largest, std::size_t(page.width) * std::size_t(page.height));
@@ -138,10 +150,14 @@ class PageBaker {
     if (meter_) {
       const BookedTime cpu_watch(own_cpu_seconds, result_.measure_cpu);
       const BookedTime wall_watch(wall_seconds, result_.measure_wall);
-      meter_->add_page(std::int32_t(p), baked.page.display);
+      const auto page = std::int32_t(p);
+      options_.linear ? meter_->add_light_page(page, baked.page.linear)
+                      : meter_->add_page(page, baked.page.display);
+      const Extent& size = layout_.pages[p];
+      result_.error.push_back(meter_->cells(page, size.width, size.height, kErrorCell));
     }
-    const std::string name =
-        page_name(options_.target, p) + page_extension(options_.texture_format);
+    const std::string name = page_name(options_.target, p) +
+                             (options_.linear ? ".light" : page_extension(options_.texture_format));
     std::filesystem::path target = options_.target.parent_path() / name;
     const std::filesystem::path image = files_.path_for(target);
     const std::filesystem::path exr =
@@ -172,18 +188,11 @@ class PageBaker {
 
   void report_images() const { images_.report("images", double(written_) / double(pages_.size())); }
 
-  // A page, and its file if that is WebP. A lossy one shows what its file does.
-  struct FinishedPage {
-    BakedPage page = {};
-    std::vector<std::uint8_t> webp = {};
-    std::optional<double> psnr = {};
-  };
-
   Result<FinishedPage> finish(std::size_t p) {
     Result<BakedPage> baked = bake(p);
     if (!baked.ok()) return baked.status();
     FinishedPage finished{std::move(*baked)};
-    if (options_.texture_format != TextureFormat::webp) return finished;
+    if (options_.linear || options_.texture_format != TextureFormat::webp) return finished;
     Image8& display = finished.page.display;
     auto webp = encode_webp(display, {options_.webp_quality});
     if (!webp.ok()) return webp.status();
@@ -197,6 +206,7 @@ class PageBaker {
   }
 
   Status write_image(const FinishedPage& baked, const std::filesystem::path& path) const {
+    if (options_.linear) return write_light_page(path, baked.page.linear);
     if (options_.texture_format == TextureFormat::png)
       return write_png(path, baked.page.display, {options_.png_compression, true});
     std::ofstream file(path, std::ios::binary);
@@ -226,7 +236,7 @@ class PageBaker {
     bake.shifts = options_.shifts;
     bake.mip_levels = mip_levels_;
     bake.method = options_.bake_method;
-    bake.linear = options_.exr;
+    bake.linear = floats();
     return bake_page(light_, pages_[p], bake, context);
   }
 

@@ -22,6 +22,8 @@ struct BakedPages {
   // One per page: where its image lies until the files are committed.
   std::vector<std::filesystem::path> image_sources;
   Fidelity fidelity;  // zero without ExportOptions::measure_error
+  // One per page: where on it the error lies, in cells of 32 texels. Empty without measure_error.
+  std::vector<FidelityMeter::Cells> error;
   std::uint64_t covered_texels = 0;
   double bake_cpu = 0, write_cpu = 0, measure_cpu = 0;  // seconds
   // Seconds. write_wall is only the time for which the other work waited for writing.
@@ -37,9 +39,10 @@ struct PagesToBake {
 };
 
 // Bakes the pages and writes their images, which are named after the target (safe_file_name):
-// world.wrl gives world_0.png, world_1.png, ... (.webp, if asked for) and, with ExportOptions::exr,
-// world_0.exr, ... Their temporary names are collected in `files`. `images` gets the progress of
-// the images that are still to be written when all pages are baked.
+// world.wrl gives world_0.png, world_1.png, ... (.webp, if asked for; with ExportOptions::linear,
+// pages of light, see write_light_page()) and, with ExportOptions::exr, world_0.exr, ... Their
+// temporary names are collected in `files`. `images` gets the progress of the images that are still
+// to be written when all pages are baked.
 Result<BakedPages> bake_pages(const PagesToBake& pages, AtomicFiles& files, const Context& context,
                               const Context& images);
 

@@ -36,7 +36,8 @@ Status check_weight(const ExportOptions& o) {
   const bool webp = o.texture_format == TextureFormat::webp;
   if ((webp || o.compress) && !holds_compressed(o.target)) {
     return {ErrorCode::bad_option,
-            fmt::format("ExportOptions::{}: only glTF holds that (write .gltf or .glb)",
+            fmt::format("ExportOptions::{}: only glTF and .html hold that (write .gltf, .glb or "
+                        ".html)",
                         webp ? "texture_format" : "compress")};
   }
   if (o.webp_quality < 0 || o.webp_quality > 100)
@@ -62,9 +63,13 @@ Status check_options(const ExportOptions& o) {
   if (Status s = check_world_extension(o.target); !s.ok()) return s;
   if (o.keep_scene && !holds_scene(o.target)) {
     return {ErrorCode::bad_option,
-            "ExportOptions::keep_scene: VRML has no room for uvs beside the scene's own (write "
-            ".gltf, .glb or "
-            ".obj)"};
+            "ExportOptions::keep_scene: VRML has no room for uvs beside the scene's own, and .html "
+            "none for the scene (write .gltf, .glb or .obj)"};
+  }
+  if (o.linear && !holds_light(o.target) && !o.target.empty()) {
+    return {ErrorCode::bad_option,
+            "ExportOptions::linear: only pages of HTML hold the light itself (write .html, or add "
+            "ExportOptions::exr instead)"};
   }
   if (o.plain_pages < 1) return out_of_range("plain_pages", "at least 1");
   if (o.lightmap_pages < 1) return out_of_range("lightmap_pages", "at least 1");

@@ -35,7 +35,8 @@ enum class TextureFormat {
 const char* page_extension(TextureFormat format);
 
 struct ExportOptions {
-  // The extension chooses the format: .wrl, .wrz, .obj, .gltf, .glb. Images are written beside it.
+  // The extension chooses the format: .wrl, .wrz, .obj, .gltf, .glb, .html. Images
+  // are written beside it, except by the last two.
   std::filesystem::path target = {};
 
   // The budget: at most `atlases` (>= 1) pages of at most atlas_size² texels.
@@ -63,7 +64,9 @@ struct ExportOptions {
 
   // The length of a texel on the real surface. 0: as fine as the budget could hold, within 1 to
   // 10 mm (paper, stage 2). Where vertices with different light lie closer than 4 mm on average, it
-  // may be a quarter of their distance, and in scenes of centimetres a 64th of their side.
+  // may be a quarter of their distance, and in scenes of centimetres a 64th of their side. Plain
+  // uvs get pages as large as this length needs, and are refused if these would be larger than may
+  // be; 0: as many texels as the pages hold.
   double texel_metres = 0;
   bool follow_textures = true;   // use finer texels where the diffuse texture is finer
   double threshold = 2.0 / 255;  // of downsizing, in display values, 0..1; 0: no downsizing
@@ -94,6 +97,9 @@ struct ExportOptions {
   double simplify_slip = 0.15;
   Up up = Up::y;
   bool exr = false;  // also write scene-linear OpenEXR pages
+  // For .html: its pages hold the light itself, so that exposure and tone curve can be chosen, and
+  // values read, in the browser.
+  bool linear = false;
   TextureFormat texture_format = TextureFormat::png;
   int webp_quality = 0;  // 1..100: lossy, as WebpOptions::quality; 0: lossless
   // Packs the mesh of a glTF file, see World::compress_slip. Positions slip by a quarter of
@@ -110,6 +116,10 @@ struct ExportOptions {
   // Scene has no arrays for must have been requested (ReadOptions::rest). So must normals
   // (ReadOptions::normals), except from glTF to glTF. Textures may stay encoded.
   bool keep_scene = false;
+  // Colours of a glTF file's vertices (COLOR_0) are the light of a scene that is kept only if
+  // values beyond 1 prove it, a part of the file has _ILLUMINANCE, or this is set. Otherwise they
+  // are paint, and the export is one with charts_only.
+  bool colours_are_light = false;
   std::uint32_t lightmap_pages = 1;
   // With keep_scene, for glTF: the set of the new uvs, TEXCOORD_<uv_set>, 1..7. What it holds is
   // replaced, for instance the uvs of an earlier export. 0: the first set that is free.
@@ -117,6 +127,7 @@ struct ExportOptions {
   // Files that appear together with the world, or not at all, such as lists of what it was made
   // from. ExportReport::files does not list them.
   std::vector<ExtraFile> extra_files = {};
+  bool durable = false;  // the disk holds all files before the export returns (AtomicFiles::commit)
   // Also draw the light in false colours, from above and on the pages, as a PNG file. Needs light.
   std::filesystem::path false_colour = {};
   bool report_pictures = false;  // make ExportReport::pictures

@@ -20,6 +20,7 @@
 #include "libatlas/pipeline/false_colour.h"
 #include "libatlas/pipeline/finish_mesh.h"
 #include "libatlas/pipeline/layout_options.h"
+#include "libatlas/pipeline/lightmap.h"
 #include "libatlas/pipeline/longest_sides.h"
 #include "libatlas/pipeline/more_mip_levels.h"
 #include "libatlas/pipeline/report_pictures.h"
@@ -62,7 +63,10 @@ class Export {
         context_(context),
         plan_(make_plan(scene_, options_)),
         report_(planned_report(loaded, plan_, options_)),
-        record_(report_, stage_done, context) {}
+        record_(report_, stage_done, context) {
+    if (std::string line = colours_text(scene_, options); !line.empty())
+      report_.advice.push_back(std::move(line));
+  }
 
   Result<ExportReport> run() {
     const double cpu = own_cpu_seconds(), wall = wall_seconds();
@@ -107,12 +111,9 @@ class Export {
   }
 
  private:
-  // Without the module for image files, all stages up to the first page would run in vain.
+  // Without the module for such image files, all stages up to the first page would run in vain.
   Status check_module() const {
-    const bool kept =
-        options_.keep_scene && std::any_of(scene_.textures.begin(), scene_.textures.end(),
-                                           [](const Texture& t) { return t.encoded.empty(); });
-    return plan_.bake || kept ? check_image_module(options_.target.string()) : Status();
+    return plan_.bake && options_.exr ? check_image_module(options_.target.string()) : Status();
   }
 
   Status cut_charts() {
@@ -245,10 +246,37 @@ class Export {
     return std::move(guarded->layout);
   }
 
-  // Without light, no texel density is required, so pages are filled as well as packing can.
+  // Refuses plain uvs of less than the density asked for: pages have no image whose texels could
+  // become coarser, and the texture that comes on them would be.
+  Status check_density(const PlainUvs& uvs, const PageLayout& layout) const {
+    constexpr double kRounding = 1e-6;
+    if (options_.texel_metres == 0) return {};
+    const double texel = scene_.metres_per_unit / (uvs.density * layout.scale);
+    if (texel <= options_.texel_metres * (1 + kRounding)) return {};
+    return {ErrorCode::no_solution,
+            fmt::format("ExportOptions::texel_metres: {:g} m needs more room than the pages have, "
+                        "whose texels are {:.3g} m (give {}, or longer texels)",
+                        options_.texel_metres, texel, more_room(options_, false))};
+  }
+
+  // Without light, pages are filled as well as packing can, unless a texel density is asked for.
+  // One above what full pages hold is lowered to that, which also keeps sizes in texels finite.
   Result<PageLayout> lay_out_plain(const LayoutOptions& options, const Context& context) {
     const double texels = double(options.pages) * options.page_size * options.page_size;
-    const PlainUvs uvs{view_of(scene_), options_.charts, filling_density(charts_, texels)};
+    double density = filling_density(charts_, texels);
+    if (options_.texel_metres > 0)
+      density = std::min(density, scene_.metres_per_unit / options_.texel_metres);
+    const PlainUvs uvs{view_of(scene_), options_.charts, density};
+    Result<PageLayout> layout = fill_plain(uvs, options, context);
+    if (!layout.ok()) return layout;
+    if (Status s = check_density(uvs, *layout); !s.ok()) return s;
+    if (options_.texel_metres > 0)
+      report_.texel = report_.packed_texel = options_.texel_metres / scene_.metres_per_unit;
+    return layout;
+  }
+
+  Result<PageLayout> fill_plain(const PlainUvs& uvs, const LayoutOptions& options,
+                                const Context& context) {
     if (!options_.keep_scene) {
       Result<PageLayout> layout = fill_pages(uvs, options, charts_, context);
       report_charts();
@@ -311,6 +339,7 @@ class Export {
     if (!baked.ok()) return files_.told_by_target(baked.status());
     report_.pages = baked->pages;
     image_sources_ = std::move(baked->image_sources);
+    error_ = std::move(baked->error);
     std::uint64_t bytes = 0;
     for (const PageReport& page : baked->pages) {
       bytes += page.image_bytes;
@@ -389,11 +418,17 @@ class Export {
   Status write() {
     const Context& context = record_.begin("writing");
     if (Status s = draw(); !s.ok()) return s;
-    ExportToWrite made{scene_,          options_,
-                       charts_,         layout_,
-                       finished_->mesh, std::move(finished_->uvs),
-                       plan_.bake,      sampler_ ? &*sampler_ : nullptr,
-                       image_sources_,  view_};
+    ExportToWrite made{scene_,
+                       options_,
+                       charts_,
+                       layout_,
+                       finished_->mesh,
+                       std::move(finished_->uvs),
+                       plan_.bake,
+                       sampler_ ? &*sampler_ : nullptr,
+                       image_sources_,
+                       error_,
+                       view_};
     Result<StageOutcome> written = write_export(std::move(made), files_, report_, context);
     if (!written.ok()) return written.status();
     record_.finish(std::move(*written));
@@ -419,6 +454,7 @@ class Export {
   std::optional<SimplifiedMesh> coarse_;
   std::optional<FinishedMesh> finished_;
   std::vector<std::filesystem::path> image_sources_;  // where the pages' images lie until commit
+  std::vector<FidelityMeter::Cells> error_;           // one per page, or none
   AtomicFiles files_;
   ExportReport report_;
   StageRecorder record_;
@@ -427,14 +463,18 @@ class Export {
 }  // namespace
 
 std::string plain_pages_text(std::span<const Extent> pages, bool udim) {
-  const Extent page = pages[0];
+  const auto wider = [](const Extent& a, const Extent& b) { return a.width < b.width; };
+  const auto [least, most] = std::minmax_element(pages.begin(), pages.end(), wider);
+  // Pages of a given density are no larger than what is on them.
+  const std::string sides =
+      fmt::format("{0} x {0}", most->width) +
+      (least->width < most->width ? fmt::format(" to {0} x {0}", least->width) : std::string());
   if (pages.size() > 1 && udim)
-    return fmt::format("uvs of UDIM tiles 1001 to {0}, packed for {1} x {1} texels each",
-                       1000 + pages.size(), page.width);
+    return fmt::format("uvs of UDIM tiles 1001 to {}, packed for {} texels each",
+                       1000 + pages.size(), sides);
   if (pages.size() > 1)
-    return fmt::format("uvs of {0} square pages, packed for {1} x {1} texels", pages.size(),
-                       page.width);
-  return uv_page_text(page.width, page.height);
+    return fmt::format("uvs of {} square pages, packed for {} texels", pages.size(), sides);
+  return uv_page_text(pages[0].width, pages[0].height);
 }
 
 Result<ExportReport> export_world(const LoadedScene& loaded, const ExportOptions& options,

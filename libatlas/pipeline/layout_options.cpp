@@ -12,6 +12,7 @@ std::int32_t plain_page_size(const ChartSet& charts, const ExportOptions& option
   constexpr double kTexelsAChart = 1024, kExpectedFill = 0.75;
   constexpr std::int32_t kLargestSide = 16384;
   if (!options.larger_plain_page || options.plain_pages > 1) return options.atlas_size;
+  if (options.texel_metres > 0) return kLargestSide;  // packing takes what the density needs
   // A page that is as long as its longest chart is less wide than long if the other charts do not
   // fill more. For a square page, charts are cut instead.
   double longest = 0, area = 0;

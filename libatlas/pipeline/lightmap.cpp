@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "libatlas/core/file_extension.h"
+#include "libatlas/scene/gltf/gltf_kept_colours.h"
 
 namespace atlas {
 namespace {
@@ -15,6 +16,28 @@ std::string first_to_last(const std::vector<std::string>& names) {
 
 bool has_lightmap(bool lit, const ExportOptions& options) {
   return lit && options.keep_scene && !options.charts_only;
+}
+
+bool keeps_paint(const Scene& scene, const ExportOptions& options) {
+  const KeptColours colours = kept_colours(scene);
+  return options.keep_scene && !options.colours_are_light && !colours.illuminance &&
+         colours.values == GltfColours::within_one;
+}
+
+std::string colours_text(const Scene& scene, const ExportOptions& options) {
+  const KeptColours colours = kept_colours(scene);
+  if (!options.keep_scene || options.charts_only || colours.values == GltfColours::none) return "";
+  if (keeps_paint(scene, options))
+    return "COLOR_0 is taken as paint and stays, since no value is beyond 1: the new uvs are "
+           "without light (ExportOptions::colours_are_light takes it as light)";
+  const char* why = options.colours_are_light ? "as ExportOptions::colours_are_light says"
+                    : colours.values == GltfColours::beyond_one
+                        ? "since values are beyond 1"
+                        : "since parts of the file have _ILLUMINANCE";
+  return fmt::format(
+      "COLOR_0 is taken as light where there is no _ILLUMINANCE, {} (ExportOptions::charts_only "
+      "leaves it as it is)",
+      why);
 }
 
 bool holds_pages(const ExportOptions& options, bool bake) {

@@ -232,7 +232,7 @@ TextureOptions texture_options(const ExportPlan& plan, const ExportReport& repor
   texture.follow_textures = options.follow_textures;
   texture.texture_sampling = texture_sampling(options);
   texture.threshold = options.threshold;
-  if (options.exr) texture.brightest = report.luminance.maximum;
+  if (options.exr || options.linear) texture.brightest = report.luminance.maximum;
   texture.min_side = options.min_side;
   texture.max_side = options.atlas_size - 2 * gutter_pad(options.mip_levels);
   return texture;
@@ -240,7 +240,8 @@ TextureOptions texture_options(const ExportPlan& plan, const ExportReport& repor
 
 ExportOptions planned_options(const Scene& scene, const ExportOptions& options) {
   ExportOptions planned = options;
-  if (!has_lightmap(scene.lit(), options)) return planned;
+  planned.charts_only |= keeps_paint(scene, options);
+  if (!has_lightmap(scene.lit(), planned)) return planned;
   planned.atlases = options.lightmap_pages;
   planned.simplify = false;
   if (options.quantity == Quantity::illuminance) planned.quantity = Quantity::luminance;
@@ -318,11 +319,11 @@ Status check_plan(const ExportPlan& plan, const ExportOptions& options) {
         page_name(target, options.atlases - 1) + page_extension(options.texture_format);
     if (Status s = check_writable(target.parent_path() / last_page); !s.ok()) return s;
   }
-  if (!plan.bake) return {};
+  if (!plan.bake && options.texel_metres == 0) return {};
   // A chart smaller than a texel has no place on a page.
   const double across = std::sqrt(plan.surface_area_m2);
   if (plan.texel_metres <= across) return {};
-  if (!(across > 0))
+  if (!(across > 0) && plan.bake)
     return {ErrorCode::bad_input, "no triangle has an area, nothing can be lit (check the scene)"};
   return {ErrorCode::bad_option,
           fmt::format("ExportOptions::texel_metres: {:g} m is more than the side of a square as "

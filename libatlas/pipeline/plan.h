@@ -10,7 +10,8 @@
 namespace atlas {
 
 // Returns the options that hold for this scene: a scene that is kept gets its light on one page, as
-// it falls on the surfaces, and stays as fine as it is. All functions here take either.
+// it falls on the surfaces, and stays as fine as it is; if its colours are paint, it is one without
+// light. All functions here take either.
 ExportOptions planned_options(const Scene& scene, const ExportOptions& options);
 
 // Makes the plan. This takes time in proportion to the number of triangles, a small share of what

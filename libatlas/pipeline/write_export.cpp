@@ -2,9 +2,11 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <glm/geometric.hpp>
+#include <iterator>
 #include <optional>
 #include <string>
 #include <utility>
@@ -20,6 +22,7 @@
 #include "libatlas/pipeline/assemble_world.h"
 #include "libatlas/pipeline/export_world.h"
 #include "libatlas/pipeline/lightmap.h"
+#include "libatlas/pipeline/plan.h"
 #include "libatlas/scene/uv_page.h"
 #include "libatlas/sheets/one_sided.h"
 
@@ -84,6 +87,44 @@ Viewpoint viewpoint_of(const ExportToWrite& made, const ToneMapping& tone, const
   return choose_viewpoint(made.scene.positions, made.scene.indices, eye, context);
 }
 
+// Returns the reflectance that multiplies a triangle's light, or 0 if that is not one colour.
+Vec3f reflectance_of(const Scene& scene, std::size_t triangle) {
+  const Material& material = scene.materials[scene.triangle_material[triangle]];
+  return material.texture >= 0 && !scene.texcoord_indices.empty() ? Vec3f{} : material.diffuse;
+}
+
+PageLight light_of(const ExportToWrite& made, const ExportReport& report) {
+  PageLight light;
+  const Quantity quantity = made.options.quantity;
+  light.quantity = quantity == Quantity::illuminance ? "illuminance"
+                   : quantity == Quantity::luminance ? "luminance"
+                                                     : "colour";
+  ToneOptions options = tone_options(made.options);
+  const auto add = [&](const ToneMapping& tone) {
+    ShownCurve curve{std::string(tone_operator_name(tone.op)), tone.scale, tone.white, {}, {}};
+    std::copy(std::begin(tone.parameter), std::end(tone.parameter), curve.parameter);
+    std::copy(std::begin(tone.offset), std::end(tone.offset), curve.offset);
+    light.curves.push_back(std::move(curve));
+  };
+  add(report.tone);
+  for (const ToneOperator op : {ToneOperator::linear, ToneOperator::reinhard, ToneOperator::drago,
+                                ToneOperator::reinhard_devlin}) {
+    if (op == report.tone.op) continue;
+    options.op = op;
+    if (const auto tone = make_tone_mapping(options, report.luminance); tone.ok()) add(*tone);
+  }
+  if (quantity != Quantity::illuminance) return light;
+  light.reflectance.resize(made.charts.charts.size());
+  std::vector<bool> seen(light.reflectance.size(), false);
+  for (std::size_t t = 0; t < made.charts.triangle_chart.size(); ++t) {
+    const std::uint32_t chart = made.charts.triangle_chart[t];
+    const Vec3f r = reflectance_of(made.scene, t);
+    light.reflectance[chart] = !seen[chart] || light.reflectance[chart] == r ? r : Vec3f{};
+    seen[chart] = true;
+  }
+  return light;
+}
+
 World make_world(ExportToWrite& made, ExportReport& report, const Context& context) {
   const ExportOptions& options = made.options;
   const PlacedCharts placed{made.charts, made.layout.placements, made.layout.pages};
@@ -120,18 +161,23 @@ World make_world(ExportToWrite& made, ExportReport& report, const Context& conte
   for (std::size_t p = 0; p < made.image_sources.size(); ++p) {
     world.pages[p].image = report.pages[p].image;
     world.pages[p].image_source = made.image_sources[p];
+    if (p < made.error.size()) {
+      world.pages[p].error = made.error[p].rms;
+      world.pages[p].error_columns = made.error[p].columns;
+    }
   }
+  if (made.baked && options.linear) world.light = light_of(made, report);
   return world;
 }
 
-// Gives all files their names, those of `extra` too, and adds the sizes of the world's own to the
+// Gives all files their names, the extra ones too, and adds the sizes of the world's own to the
 // report and up to `bytes`.
-Status commit_files(const std::vector<ExtraFile>& extra, AtomicFiles& files, ExportReport& report,
+Status commit_files(const ExportOptions& options, AtomicFiles& files, ExportReport& report,
                     std::uint64_t& bytes) {
   const std::vector<std::filesystem::path> written = files.targets();
-  for (const ExtraFile& file : extra)
+  for (const ExtraFile& file : options.extra_files)
     if (Status s = files.write(file.path, file.bytes); !s.ok()) return s;
-  if (Status s = files.commit(); !s.ok()) return s;
+  if (Status s = files.commit(options.durable); !s.ok()) return s;
   for (const auto& path : written) {
     std::error_code error;
     const auto size = std::filesystem::file_size(path, error);
@@ -188,7 +234,7 @@ Result<StageOutcome> write_export(ExportToWrite made, AtomicFiles& files, Export
   }
   if (context.cancelled()) return Status::cancelled();
   std::uint64_t bytes = 0;
-  if (Status s = commit_files(made.options.extra_files, files, report, bytes); !s.ok()) return s;
+  if (Status s = commit_files(made.options, files, report, bytes); !s.ok()) return s;
   return StageOutcome{report.triangles_out, bytes, "bytes", writing_note(made, *world_file)};
 }
 

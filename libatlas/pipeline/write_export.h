@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "libatlas/bake/fidelity.h"
 #include "libatlas/charts/charted_mesh.h"
 #include "libatlas/core/atomic_file.h"
 #include "libatlas/core/context.h"
@@ -32,6 +33,7 @@ struct ExportToWrite {
   const LuminanceSampler* light = nullptr;  // that light; not null if baked
   // One per page with an image: where it lies until the files are committed.
   std::span<const std::filesystem::path> image_sources = {};
+  std::span<const FidelityMeter::Cells> error = {};  // one per page, or none
   std::optional<FileView> view = {};  // where a viewer of the scene's own file begins
 };
 

@@ -135,10 +135,18 @@ struct ExportReport {
   std::vector<std::string> advice = {};  // what the figures mean for the user, and the remedy
 };
 
+// What was asked for, and what the report is to hold of it.
+struct ReportRequest {
+  std::string command = {};  // the command line, or what stands for it
+  std::vector<std::pair<std::string, std::string>> options = {};  // with their values, as text
+  bool chart_rows = false;  // in JSON, a row of figures for each chart, about 1 kB
+};
+
 // Writes the report as JSON (docs/report.md explains every key). The file is written completely or
 // not at all. If the export was not carried out, the file has the plan and the stages so far, but
 // no results.
-Status write_json(const ExportReport& report, const std::filesystem::path& path);
+Status write_json(const ExportReport& report, const std::filesystem::path& path,
+                  const ReportRequest& request = {});
 
 // Returns a line of text for users, such as the following. The seconds are CPU time.
 //   charts  301709 -> 68 charts, L2 1.0012, 99.9 % 1.112  0.82 s  120 MiB

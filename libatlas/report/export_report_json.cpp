@@ -95,15 +95,11 @@ Json json_of(const ChartSet::Timing& t) {
           {"overlaps", t.overlaps_cpu}, {"absorb", t.absorb_cpu},   {"limbs", t.limbs_cpu}};
 }
 
-Json charts_json(const ExportReport& r) {
-  Json list = Json::array();
-  std::uint64_t planar = 0;
-  double widest_cone = 0;
+Json rows_of(const ExportReport& r) {
+  Json rows = Json::array();
   for (std::size_t i = 0; i < r.charts.size(); ++i) {
     const Chart& c = r.charts[i];
-    planar += c.planar_projection;
-    widest_cone = std::max(widest_cone, c.cone_degrees);
-    list.push_back({{"triangles", c.triangle_count},
+    rows.push_back({{"triangles", c.triangle_count},
                     {"size", {c.size.x, c.size.y}},
                     {"area", c.distortion.surface_area},
                     {"cone_degrees", c.cone_degrees},
@@ -111,8 +107,18 @@ Json charts_json(const ExportReport& r) {
                     {"kept", c.kept},
                     {"distortion", json_of(c.distortion)}});
     if (i >= r.chart_pages.size()) continue;
-    list.back()["page"] = r.chart_pages[i];
-    list.back()["texels_per_unit"] = r.chart_densities[i];
+    rows.back()["page"] = r.chart_pages[i];
+    rows.back()["texels_per_unit"] = r.chart_densities[i];
+  }
+  return rows;
+}
+
+Json charts_json(const ExportReport& r) {
+  std::uint64_t planar = 0;
+  double widest_cone = 0;
+  for (const Chart& c : r.charts) {
+    planar += c.planar_projection;
+    widest_cone = std::max(widest_cone, c.cone_degrees);
   }
   return {
       {"count", r.charts.size()},
@@ -135,8 +141,7 @@ Json charts_json(const ExportReport& r) {
         {"misoriented_edges", r.repairs.misoriented_edges},
         {"split_charts", r.repairs.split_charts},
         {"kept_charts", r.repairs.kept_charts},
-        {"reflattened_charts", r.repairs.reflattened_charts}}},
-      {"charts", list}};
+        {"reflattened_charts", r.repairs.reflattened_charts}}}};
 }
 
 Json light_json(const ExportReport& r) {
@@ -145,6 +150,7 @@ Json light_json(const ExportReport& r) {
           {"median", r.luminance.median},
           {"middle", r.luminance.middle},
           {"percentile98", r.luminance.percentile98},
+          {"percentile99", r.luminance.percentile99},
           {"maximum", r.luminance.maximum},
           {"mean", r.luminance.mean},
           {"log_average", r.luminance.log_average},
@@ -249,8 +255,9 @@ Json error_json(const Fidelity& f, ToneOperator tone) {
 }
 
 // Values that were not measured have no key, because a 0 would read as a perfect result.
-void add_results(const ExportReport& r, Json& json) {
+void add_results(const ExportReport& r, const ReportRequest& request, Json& json) {
   json["charts"] = charts_json(r);
+  if (request.chart_rows) json["charts"]["charts"] = rows_of(r);
   json["packing"] = pages_json(r);
   if (r.plan.runs("grouping")) json["grouping"] = grouping_json(r.grouping);
   if (r.full_texels > 0) {
@@ -273,19 +280,28 @@ void add_results(const ExportReport& r, Json& json) {
 
 }  // namespace
 
-nlohmann::ordered_json json_of(const ExportReport& r) {
-  Json json{{"target", r.target.string()}, {"wall_s", r.wall_seconds},
-            {"cpu_s", r.cpu_seconds},      {"peak_mib", double(r.peak_memory) / kMebibyte},
-            {"scene", scene_json(r)},      {"plan", json_of(r.plan)},
-            {"stages", stages_json(r)},    {"skipped", skipped_json(r.plan)}};
-  if (r.carried_out) add_results(r, json);
+nlohmann::ordered_json json_of(const ExportReport& r, const ReportRequest& request) {
+  Json json{{"version", LIBATLAS_VERSION}};
+  if (!request.command.empty()) json["command"] = request.command;
+  for (const auto& [name, value] : request.options) json["options"][name] = value;
+  json.update({{"target", r.target.string()},
+               {"wall_s", r.wall_seconds},
+               {"cpu_s", r.cpu_seconds},
+               {"peak_mib", double(r.peak_memory) / kMebibyte},
+               {"scene", scene_json(r)},
+               {"plan", json_of(r.plan)},
+               {"stages", stages_json(r)},
+               {"skipped", skipped_json(r.plan)}});
+  if (r.carried_out) add_results(r, request, json);
   return json;
 }
 
-Status write_json(const ExportReport& r, const std::filesystem::path& path) {
+Status write_json(const ExportReport& r, const std::filesystem::path& path,
+                  const ReportRequest& request) {
   // Names come from files and may hold bytes that are not UTF-8. Such bytes are replaced, because
   // otherwise they would end the export.
-  return write_file(path, json_of(r).dump(1, ' ', false, Json::error_handler_t::replace) + "\n");
+  return write_file(path,
+                    json_of(r, request).dump(1, ' ', false, Json::error_handler_t::replace) + "\n");
 }
 
 std::string stage_line(const StageReport& s) {

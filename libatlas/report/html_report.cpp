@@ -78,12 +78,16 @@ Status write_html(const ExportReport& report, const ReportRequest& request,
                   const std::filesystem::path& path) {
   const Result<Json> pictures = pictures_json(report.pictures);
   if (!pictures.ok()) return pictures.status();
+  std::string options;
+  for (const auto& [name, value] : request.options) options += name + " " + value + "\n";
   const Json asked{
-      {"command", request.command}, {"options", request.options}, {"version", request.version}};
+      {"command", request.command}, {"options", options}, {"version", LIBATLAS_VERSION}};
+  ReportRequest rows;  // the page draws them
+  rows.chart_rows = true;
   std::string page(embedded::report_html);
   fill(page, "@style@", embedded::report_css);
   fill(page, "@script@", embedded::report_js);
-  fill(page, "@report@", text_of(json_of(report)));
+  fill(page, "@report@", text_of(json_of(report, rows)));
   fill(page, "@asked@", text_of(asked));
   fill(page, "@pictures@", text_of(*pictures));
   return write_file(path, page);

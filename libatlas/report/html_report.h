@@ -2,19 +2,11 @@
 #pragma once
 
 #include <filesystem>
-#include <string>
 
 #include "libatlas/core/status.h"
 #include "libatlas/report/export_report.h"
 
 namespace atlas {
-
-// What was asked for, as text.
-struct ReportRequest {
-  std::string command = {};  // the command line, or what stands for it
-  std::string options = {};  // every option with its value, one a line
-  std::string version = {};  // of libatlas
-};
 
 // Writes a self-contained page of HTML: the figures of write_json(), charts of them, and the
 // pictures of ExportReport::pictures, if they were made. It needs no network. The file is written

@@ -7,6 +7,6 @@
 
 namespace atlas {
 
-nlohmann::ordered_json json_of(const ExportReport& report);
+nlohmann::ordered_json json_of(const ExportReport& report, const ReportRequest& request);
 
 }  // namespace atlas

@@ -21,7 +21,8 @@ enum class DefectKind : std::uint8_t {
   position_not_finite,      // vertex with a NaN, infinite or beyond-float coordinate
   position_rounded,         // vertex that rounding to floats moves by over 1e-3 of the typical edge
   triangle_closed,          // triangle kept: corners that differ in double become equal as floats
-  polygon_too_large,        // concave polygon too large for ear clipping: cut as a fan
+  polygon_repeated,         // face left out: it names its vertices more often than outlines can
+  polygon_too_large,        // concave polygon beyond the limits of ear clipping: cut as a fan
   texcoord_out_of_range,    // triangle kept without texture coordinates: no such coordinate
   texcoord_partial,         // triangle kept without texture coordinates: some corners lack one
   texcoord_not_finite,      // texture coordinate replaced by (0, 0)

@@ -59,11 +59,12 @@ Result<std::vector<Vec3f>> read_values(const fs::path& path, const Context& cont
   if (status.code() == ErrorCode::unsupported && !known_extension(path)) return read_text(path);
   if (!status.ok()) return status;
   if (other.illumination.empty()) {
+    const bool faces = !other.triangle_colours.empty();
     return Status(
         ErrorCode::bad_input,
-        fmt::format("{}: its vertices carry no illumination (name the file that holds the "
-                    "simulation's result)",
-                    path.string()));
+        fmt::format("{}: its {} (name the file that holds the simulation's result)", path.string(),
+                    faces ? "colours are those of faces, not of vertices"
+                          : "vertices carry no illumination"));
   }
   return std::move(other.illumination);
 }
@@ -98,8 +99,12 @@ void check_order(const SceneBuilder& other, SceneBuilder& builder) {
 
 }  // namespace
 
-Status read_illumination(const fs::path& path, SceneBuilder& builder, const Context& context) {
+Status read_illumination(const ReadOptions& options, SceneBuilder& builder,
+                         const Context& context) {
+  const fs::path& path = options.illumination_file;
   SceneBuilder other(path);
+  if (options.confine) other.named_files.confine_to(path.parent_path());
+  other.limits = options.limits;
   other.wants_textures = false;
   auto values = read_values(path, context, other);
   if (!values.ok()) return values.status();

@@ -14,6 +14,7 @@
 #include "libatlas/scene/building/formats.h"
 #include "libatlas/scene/files/file_bytes.h"
 #include "libatlas/scene/files/text_scanner.h"
+#include "libatlas/scene/off_colours.h"
 
 namespace atlas {
 namespace fs = std::filesystem;
@@ -37,42 +38,6 @@ Status cut_short(const std::string& file, std::string_view what) {
       fmt::format("{}: {}, but the file ends before (it was cut short: copy or export it again)",
                   file, what)};
 }
-
-// Collects colours as illumination. If all are whole numbers and the largest is above 1 and at most
-// 255, they are divided by 255, as most programs write them. Otherwise they are used unchanged, as
-// Geomview and simulations write them. So is alpha, by itself.
-class Colours {
- public:
-  explicit Colours(SceneBuilder& builder) : builder_(builder) {}
-
-  // `rgba` are 3 or 4 numbers.
-  void add(std::span<const double> rgba, bool whole) {
-    builder_.illumination.push_back({float(rgba[0]), float(rgba[1]), float(rgba[2])});
-    whole_ &= whole;
-    for (int c = 0; c < 3; ++c) largest_ = std::max(largest_, rgba[c]);
-    if (!builder_.wants_rest || rgba.size() < 4) return;
-    builder_.vertex_opacity.resize(builder_.illumination.size(), kNoAlpha);
-    builder_.vertex_opacity.back() = float(rgba[3]);
-    largest_alpha_ = std::max(largest_alpha_, rgba[3]);
-  }
-  void finish() {
-    if (are_bytes(largest_))
-      for (Vec3f& v : builder_.illumination) v = {v.x / 255, v.y / 255, v.z / 255};
-    if (builder_.vertex_opacity.empty()) return;
-    builder_.vertex_opacity.resize(builder_.illumination.size(), kNoAlpha);
-    const float scale = are_bytes(largest_alpha_) ? 255 : 1;
-    for (float& v : builder_.vertex_opacity) v = v == kNoAlpha ? 1 : v / scale;
-  }
-
- private:
-  static constexpr float kNoAlpha = -1;  // of vertices whose colour has three numbers
-
-  bool are_bytes(double largest) const { return whole_ && largest > 1 && largest <= 255; }
-
-  SceneBuilder& builder_;
-  bool whole_ = true;
-  double largest_ = 0, largest_alpha_ = 0;
-};
 
 // Texture coordinates and normals are given per vertex.
 FaceCorners corners_of(const std::vector<std::int64_t>& vertices, const OffLayout& layout,
@@ -137,14 +102,15 @@ class TextOff {
   }
 
   // Reads the numbers of a line. Returns their count, or -1 after a word that is not a number.
-  // Clears `whole` if a colour is not written in whole numbers.
-  int read_numbers(double* n, bool& whole) {
+  // Clears `whole` if the colour, which begins with number `colour`, is not written in whole
+  // numbers.
+  int read_numbers(double* n, int colour, bool& whole) {
     int count = 0;
     while (count < kMost && !scan_.at_line_end()) {
       const char* start = scan_.position();
       if (!scan_.number(n[count])) return -1;
       const std::string_view text(start, std::size_t(scan_.position() - start));
-      const int of_colour = count - layout_.before_colour();
+      const int of_colour = count - colour;
       if (of_colour >= 0 && of_colour < 3 && text.find_first_of(".eEn") != text.npos) whole = false;
       ++count;
     }
@@ -167,7 +133,7 @@ class TextOff {
       }
       double n[kMost];
       bool whole = true;
-      const int count = read_numbers(n, whole);
+      const int count = read_numbers(n, layout_.before_colour(), whole);
       if (count < 0) {
         return malformed(
             place(), fmt::format("'{}' is not a number of a vertex", scan_.word().substr(0, 40)));
@@ -178,7 +144,7 @@ class TextOff {
       }
       scan_.next_line();
     }
-    colours_.finish();
+    colours_.finish_vertices();
     auto next_bad = bad.begin();
     builder_.check_positions([&](std::size_t) { return *next_bad++; });
     return {};
@@ -199,7 +165,8 @@ class TextOff {
     builder_.positions.push_back({n[0], n[1], n[2]});
     if (layout_.normal && builder_.wants_normals)
       builder_.normals.push_back({float(n[3]), float(n[4]), float(n[5])});
-    if (layout_.colour) colours_.add({n + layout_.before_colour(), std::size_t(colour)}, whole);
+    if (layout_.colour)
+      colours_.add_vertex({n + layout_.before_colour(), std::size_t(colour)}, whole);
     const double* uv = n + layout_.before_colour() + colour;
     if (layout_.texture) builder_.texcoords.push_back({float(uv[0]), float(uv[1])});
     if (count > least + colour) {  // the header does not say what they mean
@@ -222,10 +189,25 @@ class TextOff {
         return cut_short(builder_.file, fmt::format("face {} of {} is missing", f + 1, faces_));
       }
       if (Status s = read_corners(corners, f); !s.ok()) return s;
+      read_face_colour();
       builder_.add_face(corners_of(corners, layout_, builder_), [&] { return place(); });
-      scan_.next_line();  // skips the face's colour, too
+      scan_.next_line();
     }
+    colours_.finish_faces();
     return {};
+  }
+
+  // A colour may follow the corners of a face: nothing, an index into a map of colours that is in
+  // another file, or three or four numbers.
+  void read_face_colour() {
+    double n[kMost];
+    bool whole = true;
+    const int count = read_numbers(n, 0, whole);
+    builder_.face_colour.reset();
+    if (count == 0) return;
+    if (count == 3 || count == 4) return colours_.next_face({n, std::size_t(count)}, whole);
+    builder_.defects.add(DefectKind::element_ignored,
+                         [&] { return place() + ", what follows the corners of the face"; });
   }
 
   // Some programs spread a face over several lines. Only the end of a line separates the face's
@@ -263,7 +245,7 @@ class TextOff {
   TextScanner scan_;
   OffLayout layout_;
   SceneBuilder& builder_;
-  Colours colours_;
+  OffColours colours_;
   std::uint64_t vertices_ = 0, faces_ = 0;
   std::uint32_t line_ = 0;
 };
@@ -326,7 +308,7 @@ class BinaryOff {
 
   Status read(const Context& context) {
     builder_.positions.reserve(vertices_);
-    Colours colours(builder_);
+    OffColours colours(builder_);
     for (std::size_t i = 0; i < vertices_; ++i) {
       if (i % 65536 == 0 && context.cancelled()) return Status::cancelled();
       std::size_t at = 3 + i * vertex_words();
@@ -335,13 +317,14 @@ class BinaryOff {
         builder_.normals.push_back({number(at + 3), number(at + 4), number(at + 5)});
       at += std::size_t(layout_.before_colour());
       if (layout_.colour) {
-        colours.add(
+        colours.add_vertex(
             std::array<double, 4>{number(at), number(at + 1), number(at + 2), number(at + 3)},
             false);
         at += 4;
       }
       if (layout_.texture) builder_.texcoords.push_back({number(at), number(at + 1)});
     }
+    colours.finish_vertices();
     builder_.check_positions(
         [&](std::size_t i) { return fmt::format("{}: vertex {}", builder_.file, i); });
     builder_.reserve_triangles(faces_, layout_.texture);
@@ -354,10 +337,22 @@ class BinaryOff {
       }
       corners.clear();
       for (std::size_t k = 0; k < word(at); ++k) corners.push_back(word(at + 1 + k));
+      read_face_colour(at + 1 + word(at), colours);
       builder_.add_face(corners_of(corners, layout_, builder_),
                         [&] { return fmt::format("{}: face {}", builder_.file, f); });
     }
+    colours.finish_faces();
     return {};
+  }
+
+  // `at` is behind the corners of the face.
+  void read_face_colour(std::size_t at, OffColours& colours) {
+    builder_.face_colour.reset();
+    const std::uint32_t count = counted_ ? word(at) : 0;
+    if (count != 3 && count != 4) return;
+    std::array<double, 4> rgba{};
+    for (std::size_t c = 0; c < count; ++c) rgba[c] = number(at + 1 + c);
+    colours.next_face(std::span(rgba).first(count), false);
   }
 
   std::string_view data_;

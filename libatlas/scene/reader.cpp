@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <new>
 
 #include "libatlas/core/clock.h"
 #include "libatlas/core/file_extension.h"
@@ -43,7 +44,8 @@ Status read_by_extension(const fs::path& path, SceneBuilder& builder, const Cont
       return {ErrorCode::bad_input,
               fmt::format("{}: is empty (was writing it cut short? export the scene again)",
                           path.string())};
-    return read(path, builder, context);
+    if (Status s = read(path, builder, context); !s.ok()) return s;
+    return builder.refused;
   }
   if (fs::is_directory(path, error))
     return {ErrorCode::bad_input,
@@ -56,7 +58,9 @@ Status read_by_extension(const fs::path& path, SceneBuilder& builder, const Cont
                                            : "a name without an ending")};
 }
 
-Result<LoadedScene> read_scene(const fs::path& path, const ReadOptions& given,
+namespace {
+
+Result<LoadedScene> read_whole(const fs::path& path, const ReadOptions& given,
                                const Context& context) {
   ReadOptions options = given;
   if (options.keep_scene) options.encoded_textures = options.normals = options.rest = true;
@@ -67,6 +71,8 @@ Result<LoadedScene> read_scene(const fs::path& path, const ReadOptions& given,
   }
   context.report("reading", 0);
   SceneBuilder builder(path);
+  if (options.confine) builder.named_files.confine_to(path.parent_path());
+  builder.limits = options.limits;
   builder.wants_textures = options.load_textures;
   builder.wants_normals = options.normals;
   builder.wants_rest = options.rest;
@@ -80,9 +86,7 @@ Result<LoadedScene> read_scene(const fs::path& path, const ReadOptions& given,
   };
   if (Status s = read_by_extension(path, builder, part(0, own)); !s.ok()) return s;
   if (other_light) {
-    if (Status s = read_illumination(options.illumination_file, builder, part(own, kParsed));
-        !s.ok())
-      return s;
+    if (Status s = read_illumination(options, builder, part(own, kParsed)); !s.ok()) return s;
   }
   const std::shared_ptr<GltfSource> source = builder.source;
   auto result = builder.finish(options, part(kParsed, 1));
@@ -96,6 +100,20 @@ Result<LoadedScene> read_scene(const fs::path& path, const ReadOptions& given,
   return_freed_memory();  // half of the memory that reading took
   if (result.ok()) context.report("reading", 1);
   return result;
+}
+
+}  // namespace
+
+Result<LoadedScene> read_scene(const fs::path& path, const ReadOptions& options,
+                               const Context& context) {
+  try {
+    return read_whole(path, options, context);
+  } catch (const std::bad_alloc&) {
+    return Status(ErrorCode::unsupported,
+                  fmt::format("{}: out of memory while it is read (split the scene, or free some "
+                              "memory)",
+                              path.string()));
+  }
 }
 
 }  // namespace atlas

@@ -42,6 +42,14 @@ struct ReadOptions {
   bool lightmap = false;
   // If true, sets encoded_textures, normals and rest, which exports that keep the scene need.
   bool keep_scene = false;
+  // true: a scene may name only files in its own folder and below, after links are followed, and is
+  // refused if it would be read with another one. A file that is not where its name says may still
+  // be taken from beside the file that names it. The scene itself and the illumination file may lie
+  // anywhere; each has a folder of its own.
+  bool confine = false;
+  // false: what a small file may unpack to, repeat or show by reference has no limit in proportion
+  // to its size, and polygons are cut whatever time that takes. docs/formats.md lists the limits.
+  bool limits = true;
 };
 
 // Where a viewer of a file begins, in the coordinates of the file.
@@ -91,8 +99,10 @@ struct LoadedScene {
 // targets.
 //
 // Errors: not_found (no such file, no such buffer); bad_input (malformed as scene/defects.h defines
-// it; no usable triangle; an illumination file with another number of vertices); unsupported
-// (unknown extension; glTF that requires an extension which is not read); bad_option; cancelled.
+// it; no usable triangle; an illumination file with another number of vertices; a file outside the
+// scene's folder, see ReadOptions::confine); unsupported (unknown extension; glTF that requires an
+// extension which is not read; beyond ReadOptions::limits; more than the memory holds); bad_option;
+// cancelled.
 Result<LoadedScene> read_scene(const std::filesystem::path& path, const ReadOptions& options,
                                const Context& context);
 

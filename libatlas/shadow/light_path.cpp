@@ -19,7 +19,7 @@ constexpr double kDegree = std::numbers::pi / 180;
 constexpr double kHour = 15 * kDegree;  // the earth turns 15 degrees an hour
 
 // Uses hypot, since the squares of very long and very short directions leave the range of doubles.
-glm::dvec3 unit(const Vec3d& v) {
+glm::dvec3 unit_direction(const Vec3d& v) {
   return to_glm(v) / std::hypot(v.x, v.y, v.z);
 }
 
@@ -84,8 +84,8 @@ double sun_declination(int day_of_year) {
 Vec3d sun_direction(const SunOptions& options, double hour) {
   const double decl = sun_declination(options.day_of_year), lat = options.latitude * kDegree;
   const double angle = (hour - 12) * kHour;
-  const glm::dvec3 up = unit(options.up);
-  const glm::dvec3 along = unit(options.north);
+  const glm::dvec3 up = unit_direction(options.up);
+  const glm::dvec3 along = unit_direction(options.north);
   const glm::dvec3 north = glm::normalize(along - up * glm::dot(up, along));
   const glm::dvec3 east = glm::cross(north, up);
   const double e = -std::cos(decl) * std::sin(angle);
@@ -155,15 +155,16 @@ double LightPath::hour(double degrees) const {
 
 Vec3d LightPath::direction(double degrees) const {
   if (options_.kind == PathKind::sun) return sun_direction(options_.sun, hour(degrees));
-  if (length_ <= 0) return from_glm(unit(options_.directions[0]));
+  if (length_ <= 0) return from_glm(unit_direction(options_.directions[0]));
   double left = folded(degrees);
   std::size_t i = 0;
   while (i + 1 < lengths_.size() && left > lengths_[i]) left -= lengths_[i++];
   const double t = lengths_[i] > 0 ? std::min(left / lengths_[i], 1.0) : 0.0;
   if (options_.kind == PathKind::line)
-    return from_glm(unit(
+    return from_glm(unit_direction(
         from_glm(glm::mix(to_glm(options_.directions[0]), to_glm(options_.directions[1]), t))));
-  return from_glm(slerp(unit(options_.directions[i]), unit(options_.directions[i + 1]), t));
+  return from_glm(
+      slerp(unit_direction(options_.directions[i]), unit_direction(options_.directions[i + 1]), t));
 }
 
 }  // namespace atlas

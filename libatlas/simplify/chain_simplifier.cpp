@@ -10,7 +10,7 @@
 namespace atlas::simplify {
 namespace {
 
-constexpr float kIdle = std::numeric_limits<float>::infinity();
+constexpr float kIdleVertex = std::numeric_limits<float>::infinity();
 
 struct Later {
   template <class Entry>
@@ -33,7 +33,7 @@ ChainSimplifier::ChainSimplifier(const Geometry& geometry,
   previous_.assign(n, kNoIndex);
   edge_slip_.assign(n, 0.0F);
   alive_.assign(n, 1);
-  key_.assign(n, kIdle);
+  key_.assign(n, kIdleVertex);
   for (const BorderChain& chain : chains_.chains) {
     const std::uint32_t first = chain.first_slot, last = first + chain.slot_count - 1;
     for (std::uint32_t s = first; s <= last; ++s) {
@@ -65,7 +65,7 @@ void ChainSimplifier::push(std::uint32_t slot, float cost) {
 }
 
 double ChainSimplifier::next_cost() const {
-  return heap_.empty() ? kIdle : heap_.front().cost;
+  return heap_.empty() ? kIdleVertex : heap_.front().cost;
 }
 
 void ChainSimplifier::wake(std::uint32_t chart, const std::vector<std::uint32_t>& vertices) {
@@ -74,7 +74,7 @@ void ChainSimplifier::wake(std::uint32_t chart, const std::vector<std::uint32_t>
         homes_.begin(), homes_.end(), std::pair(chart, v),
         [](const Home& h, const auto& key) { return std::pair(h.chart, h.vertex) < key; });
     if (at == homes_.end() || at->chart != chart || at->vertex != v) continue;
-    if (alive_[at->slot] && key_[at->slot] == kIdle) push(at->slot, 0.0F);
+    if (alive_[at->slot] && key_[at->slot] == kIdleVertex) push(at->slot, 0.0F);
   }
 }
 
@@ -224,7 +224,7 @@ void ChainSimplifier::process(std::uint32_t slot) {
   for (const Candidate& candidate : candidates) {
     if (!candidate.possible || !attempt(slot, candidate)) continue;
     for (const std::uint32_t s : ends) {
-      if (key_[s] == kIdle) push(s, static_cast<float>(candidate.cost));
+      if (key_[s] == kIdleVertex) push(s, static_cast<float>(candidate.cost));
     }
     return;
   }
@@ -237,7 +237,7 @@ void ChainSimplifier::run(double limit, const Context& context) {
     std::pop_heap(heap_.begin(), heap_.end(), Later());
     heap_.pop_back();
     if (key_[top.slot] != top.cost || !alive_[top.slot]) continue;
-    key_[top.slot] = kIdle;
+    key_[top.slot] = kIdleVertex;
     process(top.slot);
   }
 }

@@ -102,6 +102,7 @@ struct Collector {
     const std::vector<std::uint32_t>& samples = out.seen ? seen : lit;
     std::vector<float> top = picked(peaks, samples), y = picked(lumas, samples);
     out.percentile98 = percentile(top, 0.98);
+    out.percentile99 = percentile(top, 0.99);
     out.median = percentile(y, 0.5);
     out.middle = middle_of(std::move(y));
   }

@@ -18,8 +18,8 @@ struct LuminanceStatistics {
   double unlit_area = 0;
   // Over what is visible and lit: rays from the empty space inside the scene's box (see
   // docs/texture.md); if the scene encloses no space, over the lit surface by area.
-  double percentile98 = 0;  // of max(R, G, B)
-  double median = 0;        // of Y = luma (Rec. 709 weights)
+  double percentile98 = 0, percentile99 = 0;  // of max(R, G, B)
+  double median = 0;                          // of Y = luma (Rec. 709 weights)
   // The median of Y without what is darker than a hundredth of its 90th percentile: a robust
   // estimate of the log-average of what is lit, which darkness beside it does not change.
   double middle = 0;

@@ -14,6 +14,7 @@
 #include "libatlas/core/half_edge.h"
 #include "libatlas/core/is_finite.h"
 #include "libatlas/core/no_index.h"
+#include "libatlas/core/sort_total.h"
 
 namespace atlas {
 namespace {
@@ -48,6 +49,7 @@ class MeshCheck {
     const std::string mesh = fmt::format("mesh {}: ", number_);
     if (Status s = check_span(mesh + "positions", mesh_.positions); !s.ok()) return s;
     if (Status s = check_span(mesh + "indices", mesh_.indices); !s.ok()) return s;
+    if (Status s = check_span(mesh + "normals", mesh_.normals); !s.ok()) return s;
     if (Status s = check_span(mesh + "texcoords", mesh_.texcoords); !s.ok()) return s;
     return check_span(mesh + "texcoord indices", mesh_.texcoord_indices);
   }
@@ -59,6 +61,9 @@ class MeshCheck {
     const auto wrong = [](std::size_t count, std::size_t expected) {
       return count > 0 && count != expected;
     };
+    if (wrong(mesh_.normals.count, mesh_.positions.count))
+      return bad(fmt::format("{} normals for {} positions (one each, or none)", mesh_.normals.count,
+                             mesh_.positions.count));
     if (wrong(mesh_.texcoord_indices.count, corners))
       return bad(fmt::format("{} texcoord indices for {} corners (one each, or none)",
                              mesh_.texcoord_indices.count, corners));
@@ -89,6 +94,8 @@ class MeshCheck {
                                       v, mesh_.positions.count));
       if (!is_finite(mesh_.positions[v]))
         return bad(i / 3, fmt::format("vertex {} has a position that is not finite", v));
+      if (mesh_.normals.count > 0 && !is_finite(mesh_.normals[v]))
+        return bad(i / 3, fmt::format("vertex {} has a normal that is not finite", v));
     }
     for (std::size_t t = 0; t < mesh_.density.size(); ++t)
       if (!usable(mesh_.density[t]) || !usable(density * mesh_.density[t]))
@@ -133,24 +140,36 @@ std::span<const T> part(const std::vector<T>& values, std::size_t begin, std::si
   return std::span(values).subspan(begin, end - begin);
 }
 
-// A half-edge, by the places of its ends and the uvs there.
+// Returns the place of each corner; values that are equal, of one object, are one place.
+std::vector<std::uint32_t> welded_corners(std::span<const Vec3f> values,
+                                          std::span<const std::uint32_t> objects,
+                                          std::span<const std::uint32_t> indices) {
+  const WeldedVertices welded =
+      weld_vertices(values, used_vertices(indices, values.size()), objects);
+  std::vector<std::uint32_t> places;
+  places.reserve(indices.size());
+  for (const std::uint32_t v : indices) places.push_back(welded.place[v]);
+  return places;
+}
+
+// A half-edge, by the places of its ends and the values there.
 struct EdgeSide {
-  std::uint32_t low, high, uv_low, uv_high, half_edge;
+  std::uint32_t low, high, value_low, value_high, half_edge;
 };
 
-// Marks the half-edges of edges that triangles share in space, but not in uv. `place` and `uv`: one
-// per corner.
+// Marks the half-edges of edges that triangles share in space, but with different values, such as
+// uvs, at an end. `place` and `value`: one per corner.
 std::vector<std::uint8_t> find_seams(std::span<const std::uint32_t> place,
-                                     std::span<const std::uint32_t> uv) {
+                                     std::span<const std::uint32_t> value) {
   std::vector<EdgeSide> sides;
   sides.reserve(place.size());
   for (std::uint32_t h = 0; h < place.size(); ++h) {
     std::uint32_t a = h, b = next_half_edge(h);
     if (place[a] == place[b]) continue;
     if (place[a] > place[b]) std::swap(a, b);
-    sides.push_back({place[a], place[b], uv[a], uv[b], h});
+    sides.push_back({place[a], place[b], value[a], value[b], h});
   }
-  std::sort(sides.begin(), sides.end(), [](const EdgeSide& a, const EdgeSide& b) {
+  sort_total(sides.begin(), sides.end(), [](const EdgeSide& a, const EdgeSide& b) {
     return std::tie(a.low, a.high, a.half_edge) < std::tie(b.low, b.high, b.half_edge);
   });
   std::vector<std::uint8_t> seams(place.size(), 0);
@@ -159,7 +178,8 @@ std::vector<std::uint8_t> find_seams(std::span<const std::uint32_t> place,
     bool alike = true;
     for (; end < sides.size() && sides[end].low == first.low && sides[end].high == first.high;
          ++end)
-      alike = alike && sides[end].uv_low == first.uv_low && sides[end].uv_high == first.uv_high;
+      alike = alike && sides[end].value_low == first.value_low &&
+              sides[end].value_high == first.value_high;
     for (std::size_t i = begin; !alike && i < end; ++i) seams[sides[i].half_edge] = 1;
   }
   return seams;
@@ -224,44 +244,72 @@ Result<std::uint32_t> Atlas::add(const StridedMesh& mesh, float density) {
 
 void Atlas::append(const StridedMesh& mesh, float density) {
   const std::size_t position = first_position_.back(), triangle = first_triangle_.back();
-  const std::size_t corner = 3 * triangle, corners = mesh.indices.count, triangles = corners / 3;
-  for (std::size_t i = 0; i < mesh.positions.count; ++i) positions_.push_back(mesh.positions[i]);
+  const std::size_t corners = mesh.indices.count, triangles = corners / 3;
   for (std::size_t i = 0; i < corners; ++i)
     indices_.push_back(std::uint32_t(position + mesh.indices[i]));
+  const std::uint32_t objects = append_positions(mesh);
   append_values(materials_, triangle, mesh.materials, triangles, 0u);
-  append_values(seams_, corner, mesh.seams, corners, std::uint8_t{0});
+  append_seams(mesh);
+  append_texcoords(mesh);
 
   std::vector<float> densities(mesh.density.begin(), mesh.density.end());
   if (densities.empty() && density != 1) densities.assign(triangles, 1);
   for (float& d : densities) d *= density;
   append_values(density_, triangle, std::span<const float>(densities), triangles, 1.0f);
 
-  const std::size_t texcoord = texcoords_.size();
-  for (std::size_t i = 0; i < mesh.texcoords.count; ++i) texcoords_.push_back(mesh.texcoords[i]);
-  const IndexSpan& own_texcoords =
-      mesh.texcoord_indices.count > 0 ? mesh.texcoord_indices : mesh.indices;
-  std::vector<std::uint32_t> named;
-  for (std::size_t i = 0; mesh.texcoords.count > 0 && i < corners; ++i) {
-    const std::uint32_t own = own_texcoords[i];
-    named.push_back(own < mesh.texcoords.count ? std::uint32_t(texcoord + own) : kNoIndex);
-  }
-  append_values(texcoord_indices_, corner, std::span<const std::uint32_t>(named), corners,
-                kNoIndex);
+  first_position_.push_back(position + mesh.positions.count);
+  first_triangle_.push_back(triangle + triangles);
+  object_count_ += objects;
+}
 
+// Returns how many objects the mesh consists of.
+std::uint32_t Atlas::append_positions(const StridedMesh& mesh) {
   std::unordered_map<std::uint32_t, std::uint32_t> objects;
   for (std::size_t i = 0; i < mesh.positions.count; ++i) {
+    positions_.push_back(mesh.positions[i]);
     const std::uint32_t own = mesh.objects.empty() ? 0 : mesh.objects[i];
     const auto next = std::uint32_t(object_count_ + objects.size());
     objects_.push_back(objects.try_emplace(own, next).first->second);
   }
-  first_position_.reserve(first_position_.size() + 1);
-  first_triangle_.push_back(triangle + triangles);
-  first_position_.push_back(position + mesh.positions.count);
-  object_count_ += std::uint32_t(objects.size());
+  return std::uint32_t(objects.size());
+}
+
+// Once positions and indices are there.
+void Atlas::append_seams(const StridedMesh& mesh) {
+  const std::size_t position = first_position_.back(), corner = 3 * first_triangle_.back();
+  const std::size_t corners = mesh.indices.count;
+  std::vector<std::uint8_t> seams(mesh.seams.begin(), mesh.seams.end());
+  if (mesh.normals.count > 0) {
+    std::vector<std::uint32_t> own;
+    own.reserve(corners);
+    for (std::size_t i = 0; i < corners; ++i) own.push_back(mesh.indices[i]);
+    std::vector<Vec3f> normals;
+    normals.reserve(mesh.normals.count);
+    for (std::size_t i = 0; i < mesh.normals.count; ++i) normals.push_back(mesh.normals[i]);
+    const std::vector<std::uint8_t> hard =
+        find_seams(welded_corners(part(positions_, position, positions_.size()),
+                                  part(objects_, position, objects_.size()), own),
+                   welded_corners(normals, {}, own));
+    seams.resize(corners, 0);
+    for (std::size_t h = 0; h < corners; ++h) seams[h] |= hard[h];
+  }
+  append_values(seams_, corner, std::span<const std::uint8_t>(seams), corners, std::uint8_t{0});
+}
+
+void Atlas::append_texcoords(const StridedMesh& mesh) {
+  const std::size_t texcoord = texcoords_.size(), corners = mesh.indices.count;
+  for (std::size_t i = 0; i < mesh.texcoords.count; ++i) texcoords_.push_back(mesh.texcoords[i]);
+  const IndexSpan& own = mesh.texcoord_indices.count > 0 ? mesh.texcoord_indices : mesh.indices;
+  std::vector<std::uint32_t> named;
+  for (std::size_t i = 0; mesh.texcoords.count > 0 && i < corners; ++i)
+    named.push_back(own[i] < mesh.texcoords.count ? std::uint32_t(texcoord + own[i]) : kNoIndex);
+  append_values(texcoord_indices_, 3 * first_triangle_.back(),
+                std::span<const std::uint32_t>(named), corners, kNoIndex);
 }
 
 // Removes what append() left when memory ran out.
 void Atlas::cut_to_meshes() {
+  first_position_.resize(first_triangle_.size());
   const std::size_t positions = first_position_.back(), triangles = first_triangle_.back();
   const auto cut = [](auto& values, std::size_t count) {
     values.resize(std::min(values.size(), count));
@@ -304,9 +352,7 @@ Result<std::vector<std::uint8_t>> Atlas::seams(const UnwrappedAtlas& unwrapped,
   std::vector<std::uint32_t> place(indices_.begin() + std::ptrdiff_t(c),
                                    indices_.begin() + std::ptrdiff_t(c_end));
   count_from(place, v);
-  const WeldedVertices welded = weld_vertices(
-      part(positions_, v, v_end), used_vertices(place, v_end - v), part(objects_, v, v_end));
-  for (std::uint32_t& corner : place) corner = welded.place[corner];
+  place = welded_corners(part(positions_, v, v_end), part(objects_, v, v_end), place);
   return find_seams(place, part(unwrapped.all_.charts.triangle_uv, c, c_end));
 }
 

@@ -16,6 +16,9 @@ namespace atlas {
 struct StridedMesh {
   StridedSpan<Vec3f> positions = {};
   IndexSpan indices = {};  // 3 a triangle
+  // 1 a position, or none. Edges at which triangles that share them have different normals are
+  // seams then, as baked normal maps need them. Flat shading makes seams of all edges that bend.
+  StridedSpan<Vec3f> normals = {};
   StridedSpan<Vec2f> texcoords = {};
   IndexSpan texcoord_indices = {};
   std::span<const std::uint32_t> materials = {};
@@ -82,6 +85,9 @@ class Atlas {
 
  private:
   void append(const StridedMesh& mesh, float density);
+  std::uint32_t append_positions(const StridedMesh& mesh);
+  void append_seams(const StridedMesh& mesh);
+  void append_texcoords(const StridedMesh& mesh);
   void cut_to_meshes();
 
   std::vector<std::size_t> first_position_{0}, first_triangle_{0};  // one per mesh, and the ends

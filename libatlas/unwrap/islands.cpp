@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <string>
 #include <utility>
@@ -12,8 +11,10 @@
 #include "libatlas/core/disjoint_sets.h"
 #include "libatlas/core/no_index.h"
 #include "libatlas/core/parallel.h"
+#include "libatlas/core/portable_math.h"
 #include "libatlas/pack/fit.h"
 #include "libatlas/param/orient.h"
+#include "libatlas/unwrap/check_pages.h"
 
 namespace atlas {
 namespace {
@@ -23,26 +24,11 @@ constexpr float kFarthestUv = 1e6f;
 constexpr std::uint64_t kMostLayouts = 2000;
 
 Status check(const IslandOptions& o) {
-  const auto bad = [](const std::string& text) {
-    return Status(ErrorCode::bad_option, "islands: " + text);
-  };
-  if (o.pages < 1) return bad("pages is 0 (ask for at least one)");
-  if (o.page_size < 64 || o.page_size > 16384)
-    return bad(fmt::format("page_size is {} (64 to 16384 texels)", o.page_size));
-  const bool powers = o.square || o.pages > 1;
-  if (powers && !std::has_single_bit(std::uint32_t(o.page_size)))
-    return bad(
-        fmt::format("page_size is {} (a power of two for square or several pages)", o.page_size));
-  if (o.padding < 0 || o.padding > o.page_size / 4)
-    return bad(fmt::format("padding is {} (0 to a quarter of page_size)", o.padding));
-  if (o.alignment < 1 || o.alignment > o.page_size / 4)
-    return bad(fmt::format("alignment is {} (1 to a quarter of page_size)", o.alignment));
-  if (powers && !std::has_single_bit(std::uint32_t(o.alignment)))
-    return bad(
-        fmt::format("alignment is {} (a power of two for square or several pages)", o.alignment));
+  if (Status s = check_pages("islands", o); !s.ok()) return s;
   if (!(o.texels_per_uv >= 0) || !std::isfinite(o.texels_per_uv))
-    return bad(fmt::format("texels_per_uv is {} (a number above 0, or 0 for as many as fit)",
-                           o.texels_per_uv));
+    return {ErrorCode::bad_option,
+            fmt::format("islands: texels_per_uv is {} (a number above 0, or 0 for as many as fit)",
+                        o.texels_per_uv)};
   return {};
 }
 
@@ -173,18 +159,12 @@ Result<FitResult> fit_islands(const IslandOptions& options, const std::vector<Fl
     items.push_back(box_of(island.corners));
     shapes.push_back({island.corners, island.triangles});
   }
-  FitOptions fit;
-  fit.pages = options.pages;
-  fit.page_size = options.page_size;
-  fit.power_of_two = fit.square = options.square || options.pages > 1;
-  fit.free_aspect = !fit.square;
-  fit.padding = options.padding;
-  fit.alignment = options.alignment;
+  FitOptions fit{options};
+  fit.power_of_two = options.square || options.pages > 1;
+  fit.free_aspect = !fit.power_of_two;
   fit.minimum_side = 0;
-  fit.allow_rotation = options.allow_rotation;
   fit.rotations = options.allow_rotation ? 4 : 1;
   fit.any_angle = options.allow_rotation;
-  fit.preset = options.preset;
   fit.effort = kMostLayouts;
   fit.shapes = shapes;
   Result<double> covered = covered_area(shapes, context);
@@ -201,11 +181,11 @@ Result<FitResult> fit_islands(const IslandOptions& options, const std::vector<Fl
 PackedIslands::Island placed(const FlatIsland& island, const FitPlacement& at, double density) {
   // A turned corner is R p + t, which sends the first uv, whose difference to the base is 0, to t.
   const Vec2d t = island.corners.front();
-  const double c = std::cos(at.angle) * at.scale, s = std::sin(at.angle) * at.scale;
+  const double c = portable::cos(at.angle) * at.scale, s = portable::sin(at.angle) * at.scale;
   PackedIslands::Island result{at.page, 0, {}};
-  result.angle = at.angle + std::atan2(island.turned.sine, island.turned.cosine);
-  const double all = density * at.scale, x = std::cos(result.angle) * all,
-               y = std::sin(result.angle) * all;
+  result.angle = at.angle + portable::atan2(island.turned.sine, island.turned.cosine);
+  const double all = density * at.scale, x = portable::cos(result.angle) * all,
+               y = portable::sin(result.angle) * all;
   result.offset = {at.offset.x + c * t.x - s * t.y - (x * island.base.x - y * island.base.y),
                    at.offset.y + s * t.x + c * t.y - (y * island.base.x + x * island.base.y)};
   return result;
@@ -240,7 +220,7 @@ Result<PackedIslands> pack_islands(const IslandView& view, const IslandOptions& 
   for (std::size_t i = 0; i < islands.size(); ++i) {
     const FitPlacement& at = fitted->placements[i];
     packed.islands.push_back(placed(islands[i], at, density));
-    const double c = std::cos(at.angle) * at.scale, s = std::sin(at.angle) * at.scale;
+    const double c = portable::cos(at.angle) * at.scale, s = portable::sin(at.angle) * at.scale;
     const Extent page = packed.pages[at.page];
     for (std::size_t k = 0; k < islands[i].uvs.size(); ++k) {
       const Vec2d p = islands[i].corners[k];

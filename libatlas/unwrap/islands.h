@@ -8,7 +8,7 @@
 #include "libatlas/core/context.h"
 #include "libatlas/core/status.h"
 #include "libatlas/core/vec.h"
-#include "libatlas/pack/pack.h"
+#include "libatlas/pack/pages.h"
 
 namespace atlas {
 
@@ -18,19 +18,13 @@ struct IslandView {
   std::span<const std::uint32_t> indices = {};  // 3 a triangle, into uvs
 };
 
-struct IslandOptions {
-  std::uint32_t pages = 1;        // the most pages to use, >= 1
-  std::int32_t page_size = 2048;  // largest side of a page, texels, 64 to 16384
-  std::int32_t padding = 2;    // texels kept free around each island, 0 to a quarter of page_size
-  std::int32_t alignment = 1;  // islands own whole cells of so many texels, 1 to a quarter of it
-  bool allow_rotation = true;  // also by other than right angles
-  PackPreset preset = PackPreset::standard;
+// Of the pages, page_size is 64 to 16384 texels, and padding and alignment are at most a quarter of
+// it. Sides of square and of several pages are powers of two; otherwise a single page has the shape
+// that packs best. Rotation is by any angle.
+struct IslandOptions : PageOptions {
   // Texels of the page per unit of uv, finite; 0 for as many as the pages hold. If the pages hold
   // less, all islands get less, see PackedIslands::texels_per_uv.
   double texels_per_uv = 0;
-  // Page sides are equal and powers of two (page_size must be one), as those of several pages are.
-  // Otherwise a single page has the shape that packs best.
-  bool square = false;
 };
 
 struct PackedIslands {

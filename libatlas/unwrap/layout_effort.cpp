@@ -44,10 +44,10 @@ Result<WorkedLayout> lay_out(const WantedCharts& wanted, const LayoutEffort& opt
 }
 
 // A page for uvs alone is packed again with PackPreset::best if its charts, with their small holes
-// and narrow bays, cover less of it than kPoor, and with their gutters less than kPoorWithGutters.
-// Gutters take most of small pages, where packing again does not help. This concerns two or three
-// of a hundred models. All packing of 21 such pages took 0.5 to 6 s each.
-constexpr double kPoor = 0.66, kPoorWithGutters = 0.7;
+// and narrow bays, cover less of it than kPoorPage, and with their gutters less than
+// kPoorPageWithGutters. Gutters take most of small pages, where packing again does not help. This
+// concerns two or three of a hundred models. All packing of 21 such pages took 0.5 to 6 s each.
+constexpr double kPoorPage = 0.66, kPoorPageWithGutters = 0.7;
 
 // Pages with more charts than this, which are not pressed together, are not packed again: with 900
 // loose triangles, packing again won 1 % in 7 s. Neither is a page with a single chart, which has
@@ -75,9 +75,9 @@ bool worth_more_work(const ChartSet& charts, const WorkedLayout& layout,
                      const LayoutEffort& options) {
   return options.free_aspect && options.preset == PackPreset::standard && layout.won == 0 &&
          charts.charts.size() > 1 && charts.charts.size() <= kMostCharts &&
-         layout.with_lost_room * layout.uv_utilization < kPoor &&
+         layout.with_lost_room * layout.uv_utilization < kPoorPage &&
          options.most_won * layout.uv_utilization >= options.wanted_fill &&
-         taken(charts, layout, options) < kPoorWithGutters;
+         taken(charts, layout, options) < kPoorPageWithGutters;
 }
 
 // Packs by boxes, by outlines if these may win, and with more effort if that may win much.

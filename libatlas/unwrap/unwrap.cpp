@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <numeric>
 #include <string>
@@ -13,6 +12,7 @@
 #include "libatlas/charts/charted_mesh.h"
 #include "libatlas/core/is_enumerator.h"
 #include "libatlas/core/no_index.h"
+#include "libatlas/unwrap/check_pages.h"
 #include "libatlas/unwrap/fill_pages.h"
 #include "libatlas/unwrap/part_gaps.h"
 #include "libatlas/uvs/finish_uvs.h"
@@ -33,22 +33,9 @@ Status check_options(const UnwrapOptions& options) {
   const auto bad = [](std::string text) {
     return Status(ErrorCode::bad_option, "unwrap: " + std::move(text));
   };
-  if (options.pages < 1) return bad("pages is 0 (ask for at least one)");
-  if (options.page_size < 64 || options.page_size > 16384)
-    return bad(fmt::format("page_size is {} (64 to 16384 texels)", options.page_size));
-  const bool powers = options.square || options.pages > 1;
-  if (powers && !std::has_single_bit(std::uint32_t(options.page_size)))
-    return bad(fmt::format("page_size is {} (a power of two for square or several pages)",
-                           options.page_size));
-  if (options.padding < 0 || options.padding > options.page_size / 4)
-    return bad(fmt::format("padding is {} (0 to a quarter of page_size)", options.padding));
+  if (Status s = check_pages("unwrap", options); !s.ok()) return s;
   if (options.mip_levels < 0 || options.mip_levels > 10)
     return bad(fmt::format("mip_levels is {} (0 to 10)", options.mip_levels));
-  if (options.alignment < 1 || options.alignment > options.page_size / 4)
-    return bad(fmt::format("alignment is {} (1 to a quarter of page_size)", options.alignment));
-  if (powers && !std::has_single_bit(std::uint32_t(options.alignment)))
-    return bad(fmt::format("alignment is {} (a power of two for square or several pages)",
-                           options.alignment));
   if (alignment(options) > options.page_size / 4 || padding(options) > options.page_size / 4)
     return bad(fmt::format(
         "mip_levels is {}, whose cells of {} texels are more than a quarter of page_size",

@@ -10,11 +10,11 @@
 namespace atlas {
 namespace {
 
-struct Axes {
+struct LightAxes {
   glm::dvec3 up, side, other;
 };
 
-Axes axes_around(const Vec3d& up_axis) {
+LightAxes axes_around(const Vec3d& up_axis) {
   const glm::dvec3 up = glm::normalize(to_glm(up_axis));
   const glm::dvec3 across = std::abs(up.x) < 0.9 ? glm::dvec3(1, 0, 0) : glm::dvec3(0, 1, 0);
   const glm::dvec3 side = glm::normalize(glm::cross(up, across));
@@ -24,14 +24,14 @@ Axes axes_around(const Vec3d& up_axis) {
 }  // namespace
 
 Vec3d hand_direction(const HandLight& light, const Vec3d& up) {
-  const Axes axes = axes_around(up);
+  const LightAxes axes = axes_around(up);
   const double a = glm::radians(double(light.azimuth)), e = glm::radians(double(light.elevation));
   return from_glm((axes.side * std::cos(a) + axes.other * std::sin(a)) * std::cos(e) +
                   axes.up * std::sin(e));
 }
 
 HandLight hand_light_of(const Vec3d& direction, const Vec3d& up) {
-  const Axes axes = axes_around(up);
+  const LightAxes axes = axes_around(up);
   const glm::dvec3 d = glm::normalize(to_glm(direction));
   const double azimuth = glm::degrees(std::atan2(glm::dot(d, axes.other), glm::dot(d, axes.side)));
   const double elevation = glm::degrees(std::asin(std::clamp(glm::dot(d, axes.up), -1.0, 1.0)));

@@ -95,6 +95,47 @@ TEST(Fidelity, MeasuresAKnownErrorExactly) {
 
 // Texels that count up along both axes reproduce light that rises evenly, in look-ups at any place
 // between four of them.
+TEST(Fidelity, TellsWhereOnThePageTheErrorLies) {
+  const auto s = two_pages();
+  std::vector<Image8> pages = bake_pages(*s);
+  for (int y = 0; y < 128; ++y)
+    for (int x = 64; x < 128; ++x) pages[0].at(x, y)[1] += 20;
+  FidelityMeter meter = meter_of(s->light(), s->placements, {});
+  meter.add_page(0, pages[0]);
+  meter.add_page(1, pages[1]);
+  const FidelityMeter::Cells cells = meter.cells(0, 128, 128, 32);
+  ASSERT_EQ(cells.columns, 4u);
+  ASSERT_EQ(cells.rms.size(), 16u);
+  for (std::size_t i = 0; i < 16; ++i) {
+    if (i % 4 >= 2) {
+      EXPECT_NEAR(cells.rms[i], 20 / 255.0 / std::sqrt(3), 0.004) << i;  // one channel of three
+    } else {
+      EXPECT_LT(cells.rms[i], 1.2 / 255) << i;
+    }
+  }
+  EXPECT_EQ(meter.cells(1, 128, 128, 8).rms.back(), -1);  // no chart lies there
+  EXPECT_EQ(meter.cells(0, 100, 70, 32).rms.size(), 12u);
+}
+
+// They are not rounded to 8 bits, and interpolated before the tone curve.
+TEST(Fidelity, ReadsPagesOfLight) {
+  const auto s = two_pages();
+  FidelityMeter meter = meter_of(s->light(), s->placements, {});
+  for (int page = 0; page < 2; ++page) {
+    std::vector<ChartPlacement> own;
+    for (const auto& p : s->placements)
+      if (p.page == page) own.push_back(p);
+    BakeOptions options = small_page(128);
+    options.linear = true;
+    const auto baked = bake_page(s->light(), own, options, Context{});
+    ASSERT_TRUE(baked.ok());
+    meter.add_light_page(page, baked->linear);
+  }
+  const Fidelity f = meter.result();
+  EXPECT_EQ(f.unplaced, 0u);
+  EXPECT_GT(f.psnr, 62);  // rounding to 8 bits alone gives 58.9 dB
+}
+
 TEST(Fidelity, LooksUpBetweenFourTexels) {
   const LitShape shape = make_sheet(
       {1, 1, 200, 200}, [](double u, double v) { return shown((20 + 50 * u + 100 * v) / 255); });

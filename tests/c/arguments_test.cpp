@@ -74,6 +74,10 @@ class RandomArguments : public testing::Test {
       m.texcoord_stride = one_of<std::size_t>({0, 8, 3, 20});
       if (!often()) m.texcoord_indices = wide_.data();
     }
+    if (!often()) {
+      m.normals = floats_.data() + 20;
+      m.normal_stride = one_of<std::size_t>({0, 12, 5, 16});
+    }
     if (!often()) m.materials = materials_.data();
     if (!often()) m.seams = seams_.data();
     if (!often()) m.triangle_density = densities_.data();

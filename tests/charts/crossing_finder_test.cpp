@@ -13,16 +13,16 @@
 namespace atlas::test {
 namespace {
 
-struct Outline {
+struct RaggedOutline {
   std::vector<Vec2d> uvs;
   std::vector<std::array<std::uint32_t, 2>> edges;
 };
 
 // Returns a closed polygon of n corners around the origin with angles jittered by `amplitude`. If
 // that is more than 1, the polygon crosses itself in many places.
-Outline ragged(std::uint32_t n, double amplitude, std::mt19937_64& random) {
+RaggedOutline ragged(std::uint32_t n, double amplitude, std::mt19937_64& random) {
   std::uniform_real_distribution<double> unit(-0.5, 0.5);
-  Outline outline;
+  RaggedOutline outline;
   for (std::uint32_t i = 0; i < n; ++i) {
     const double angle = 2 * std::numbers::pi * (i + amplitude * 2 * unit(random)) / n;
     const double radius = 1 + 0.3 * unit(random);
@@ -37,7 +37,7 @@ double distance_to_line(const Vec2d& p, const Vec2d& a, const Vec2d& b) {
   return std::abs(x * (p.y - a.y) - y * (p.x - a.x)) / std::sqrt(x * x + y * y);
 }
 
-Crossing all_pairs(const Outline& outline, double deep) {
+Crossing all_pairs(const RaggedOutline& outline, double deep) {
   Crossing worst = Crossing::none;
   for (const auto& [a, b] : outline.edges) {
     for (const auto& [c, d] : outline.edges) {
@@ -62,7 +62,7 @@ TEST(CrossingFinder, FindsWhatAllPairsDo) {
   for (int round = 0; round < 150; ++round) {
     const auto n = static_cast<std::uint32_t>(4 + random() % (round % 3 == 0 ? 700 : 60));
     const double amplitude = 0.9 + 0.1 * double(random() % 8);
-    Outline outline = ragged(n, amplitude, random);
+    RaggedOutline outline = ragged(n, amplitude, random);
     if (round % 2) std::shuffle(outline.edges.begin(), outline.edges.end(), random);
     for (const double deep : {0.0, 0.002, 0.05}) {
       const Crossing expected = all_pairs(outline, deep);
@@ -78,7 +78,7 @@ TEST(CrossingFinder, FindsASingleCrossingInALongBorder) {
   std::mt19937_64 random(5);
   CrossingFinder check;
   for (std::uint32_t n = 250; n < 420; n += 7) {
-    Outline outline = ragged(n, 0, random);
+    RaggedOutline outline = ragged(n, 0, random);
     EXPECT_EQ(check.find(outline.edges, outline.uvs, 1e-9), Crossing::none);
     const std::uint32_t i = std::uint32_t(random() % n), far = (i + n / 2) % n;
     outline.uvs[i] = {1.5 * outline.uvs[far].x, 1.5 * outline.uvs[far].y};
@@ -92,7 +92,7 @@ TEST(CrossingFinder, WhatTouchesCrosses) {
   CrossingFinder check;
   for (const double turn : {0.0, 0.3, 1.1}) {
     const auto crossing = [&](double gap) {
-      Outline outline;
+      RaggedOutline outline;
       const std::vector<Vec2d> comb{{0, 0},         {3, 0},     {3, 2},     {1.5 + gap, 2},
                                     {1.5 + gap, 1}, {2.5, 1},   {2.5, 0.5}, {0.5, 0.5},
                                     {0.5, 0.9},     {1.5, 0.9}, {1.5, 1.9}, {0, 1.9}};

@@ -13,9 +13,9 @@
 namespace atlas::test {
 namespace {
 
-constexpr double kMaxStretch = ChartOptions{}.max_stretch;
+constexpr double kMostStretch = ChartOptions{}.max_stretch;
 
-ChartSet charts_of(const Mesh& mesh) {
+ChartSet kept_charts_of(const Mesh& mesh) {
   ChartOptions options;
   options.keep_uv_charts = !mesh.texcoords.empty();
   auto charts = make_charts(mesh.view(), options, {});
@@ -52,7 +52,7 @@ Mesh stairs(int count) {
 
 // Returns their charts, marked as if they had been flattened.
 ChartSet flat_stairs(const Mesh& mesh) {
-  ChartSet set = charts_of(mesh);
+  ChartSet set = kept_charts_of(mesh);
   for (Chart& chart : set.charts) {
     EXPECT_TRUE(chart.kept);
     chart.kept = false;
@@ -94,15 +94,15 @@ TEST(Gaps, ChartsKeepWhatTheyPromise) {
   std::size_t changed = 0;
   for (const Shape& shape : zoo()) {
     const Mesh mesh(shape);
-    const ChartSet before = charts_of(mesh);
+    const ChartSet before = kept_charts_of(mesh);
     for (const double share : {0.01, 0.09}) {
       ChartSet set = before;
-      const GapReport report = widened(mesh.view(), {clearances(set, share), kMaxStretch}, set);
+      const GapReport report = widened(mesh.view(), {clearances(set, share), kMostStretch}, set);
       changed += report.charts;
       EXPECT_LE(report.near_after, report.near_before) << shape.name;
       const ChartFindings found = check_charts(mesh.view(), set);
       EXPECT_EQ(found.fault, "") << shape.name << ' ' << share;
-      EXPECT_LE(found.stretch_999, kMaxStretch * (1 + 1e-6)) << shape.name << ' ' << share;
+      EXPECT_LE(found.stretch_999, kMostStretch * (1 + 1e-6)) << shape.name << ' ' << share;
       EXPECT_NEAR(found.stretch_l2, set.distortion.stretch_l2, 1e-3) << shape.name;
       EXPECT_NEAR(found.seam, before.seam_length, 1e-4 * (1 + found.seam)) << shape.name;
       EXPECT_EQ(set.triangle_uv, before.triangle_uv) << shape.name;
@@ -121,7 +121,7 @@ TEST(Gaps, EndsOfAStairPart) {
   const std::vector<double> clearance = clearances(set, 0.05);
   const GapReport before = measured(mesh.view(), clearance, set);
   ASSERT_GT(before.near_before, 1);
-  const GapReport report = widened(mesh.view(), {clearance, kMaxStretch}, set);
+  const GapReport report = widened(mesh.view(), {clearance, kMostStretch}, set);
   EXPECT_EQ(report.charts, 1u);
   EXPECT_DOUBLE_EQ(report.near_before, before.near_before);
   const GapReport after = measured(mesh.view(), clearance, set);
@@ -183,7 +183,7 @@ TEST(Gaps, EndThoughTrianglesAreTurnedOrWithoutArea) {
   ChartSet set = flat_stairs(mesh);
   ASSERT_GT(set.flipped_triangles.size(), 0u);
   ASSERT_EQ(set.repairs.degenerate_triangles, 2u);
-  EXPECT_EQ(widened(mesh.view(), {clearances(set, 0.05), kMaxStretch}, set).charts, 1u);
+  EXPECT_EQ(widened(mesh.view(), {clearances(set, 0.05), kMostStretch}, set).charts, 1u);
   EXPECT_EQ(check_charts(mesh.view(), set).fault, "");
 }
 
@@ -203,17 +203,17 @@ TEST(Gaps, KeptChartsAndThoseOfNoInterestStay) {
   const Mesh mesh = stairs(1);
   const ChartSet before = flat_stairs(mesh);
   ChartSet set = before;
-  const GapReport nothing = widened(mesh.view(), {clearances(set, 0), kMaxStretch}, set);
+  const GapReport nothing = widened(mesh.view(), {clearances(set, 0), kMostStretch}, set);
   EXPECT_EQ(nothing.charts, 0u);
   EXPECT_EQ(nothing.border, 0);
   EXPECT_EQ(nothing.near_before, 0);
   EXPECT_EQ(nothing.near_after, 0);
-  EXPECT_EQ(widened(mesh.view(), {clearances(set, 0.21), kMaxStretch}, set).charts, 0u);
+  EXPECT_EQ(widened(mesh.view(), {clearances(set, 0.21), kMostStretch}, set).charts, 0u);
   EXPECT_EQ(measured(mesh.view(), clearances(set, 0.21), set).border, 0);
   EXPECT_GT(measured(mesh.view(), clearances(set, 0.19), set).border, 0);
   EXPECT_EQ(bytes(set), bytes(before));
   set.charts[0].kept = true;
-  EXPECT_EQ(widened(mesh.view(), {clearances(set, 0.05), kMaxStretch}, set).charts, 0u);
+  EXPECT_EQ(widened(mesh.view(), {clearances(set, 0.05), kMostStretch}, set).charts, 0u);
   set.charts[0].kept = false;
   EXPECT_EQ(bytes(set), bytes(before));
 }
@@ -226,16 +226,16 @@ TEST(Gaps, MistakesAreErrorsAndChangeNothing) {
   const auto code = [](const Result<GapReport>& report) { return report.status().code(); };
   EXPECT_EQ(code(measure_gaps(other.view(), clearance, set, {})), ErrorCode::bad_input);
   EXPECT_EQ(code(measure_gaps(mesh.view(), none, set, {})), ErrorCode::bad_input);
-  EXPECT_EQ(code(widen_gaps(other.view(), {clearance, kMaxStretch}, set, {})),
+  EXPECT_EQ(code(widen_gaps(other.view(), {clearance, kMostStretch}, set, {})),
             ErrorCode::bad_input);
-  EXPECT_EQ(code(widen_gaps(mesh.view(), {none, kMaxStretch}, set, {})), ErrorCode::bad_input);
+  EXPECT_EQ(code(widen_gaps(mesh.view(), {none, kMostStretch}, set, {})), ErrorCode::bad_input);
   for (const double bound : {1.0, -2.0, std::numeric_limits<double>::quiet_NaN()})
     EXPECT_EQ(code(widen_gaps(mesh.view(), {clearance, bound}, set, {})), ErrorCode::bad_option);
   std::atomic<bool> cancel{true};
   Context context;
   context.cancel = &cancel;
   EXPECT_EQ(code(measure_gaps(mesh.view(), clearance, set, context)), ErrorCode::cancelled);
-  EXPECT_EQ(code(widen_gaps(mesh.view(), {clearance, kMaxStretch}, set, context)),
+  EXPECT_EQ(code(widen_gaps(mesh.view(), {clearance, kMostStretch}, set, context)),
             ErrorCode::cancelled);
   EXPECT_EQ(bytes(set), bytes(before));
 }
@@ -249,7 +249,7 @@ TEST(Gaps, SameBytesForAnyThreadCount) {
     context.threads = threads;
     ChartSet set = before;
     const GapReport report =
-        widened(mesh.view(), {clearances(set, 0.05), kMaxStretch}, set, context);
+        widened(mesh.view(), {clearances(set, 0.05), kMostStretch}, set, context);
     EXPECT_GT(report.charts, 5u);
     if (threads == 1) one = bytes(set);
     EXPECT_EQ(bytes(set), one) << threads;

@@ -12,7 +12,7 @@ namespace atlas::test {
 namespace {
 
 constexpr std::uint32_t kNone = 0xffffffffu;
-constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
+constexpr float kNanUv = std::numeric_limits<float>::quiet_NaN();
 
 double distance(double x0, double y0, double x1, double y1) {
   return std::hypot(x1 - x0, y1 - y0);
@@ -168,9 +168,9 @@ TEST(GivenUvs, WithoutUsableUvsTheMeshIsCutAsUsual) {
   const std::string usual = bytes(cut(Mesh(shape)));
   Mesh none(shape);
   Mesh zero = mapped(shape, [](Vec3f) { return Vec2f{0, 0}; });
-  Mesh nan = mapped(shape, [](Vec3f) { return Vec2f{kNan, kNan}; });
+  Mesh nan = mapped(shape, [](Vec3f) { return Vec2f{kNanUv, kNanUv}; });
   Mesh loose = nan, missing = nan, beyond = nan;
-  loose.texcoords.assign(shape.indices.size(), {kNan, 0});  // one per corner
+  loose.texcoords.assign(shape.indices.size(), {kNanUv, 0});  // one per corner
   for (std::uint32_t i = 0; i < loose.texcoord_indices.size(); ++i) loose.texcoord_indices[i] = i;
   missing.texcoord_indices.assign(shape.indices.size(), kNone);
   beyond.texcoords.clear();
@@ -305,7 +305,7 @@ TEST(GivenUvs, SameBytesForAnyThreadCount) {
   Mesh mesh(together(torus(60, 30), moved(sphere(20, 10), 0.4, {3, 0, 0})));
   const ChartSet own = cut(mesh);
   wear(own, 1, mesh);
-  for (std::size_t i = 0; i < mesh.texcoords.size(); i += 97) mesh.texcoords[i] = {kNan, 0};
+  for (std::size_t i = 0; i < mesh.texcoords.size(); i += 97) mesh.texcoords[i] = {kNanUv, 0};
   const std::string one = bytes(keep(mesh, {}, 1));
   EXPECT_EQ(one, bytes(keep(mesh, {}, 2)));
   EXPECT_EQ(one, bytes(keep(mesh, {}, 8)));

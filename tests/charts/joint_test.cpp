@@ -14,12 +14,12 @@
 namespace atlas::test {
 namespace {
 
-constexpr int kColumns = 24;
+constexpr int kRowColumns = 24;
 
 // A strip of squares two rows high, each row a chart of its own. The upper row's uvs are moved, and
 // bent by `curvature` at each column.
 struct TwoRows {
-  Mesh mesh{grid(kColumns, 2, kColumns, 2)};
+  Mesh mesh{grid(kRowColumns, 2, kRowColumns, 2)};
   Topology topology = *build_topology(mesh.view(), {}, {});
   Partition partition;
   FlatChart upper, lower;
@@ -27,7 +27,7 @@ struct TwoRows {
 
   explicit TwoRows(const std::vector<double>& curvature) {
     for (std::uint32_t t = 0; t < topology.triangle_count(); ++t) {
-      const bool up = t / 2 / kColumns == 1;
+      const bool up = t / 2 / kRowColumns == 1;
       partition.chart.push_back(up ? 1 : 0);
       add(t, up ? upper : lower);
     }
@@ -55,7 +55,7 @@ struct TwoRows {
     const double scale = topology.scale;
     std::vector<glm::dvec2> path{{0, 0}};
     std::vector<double> direction{0};
-    for (int i = 0; i < kColumns; ++i) {
+    for (int i = 0; i < kRowColumns; ++i) {
       const double d = direction.back() + curvature[i];
       path.push_back(path.back() + scale * glm::dvec2(std::cos(d), std::sin(d)));
       direction.push_back(d);
@@ -133,8 +133,8 @@ TEST(RigidFit, OfTheLaterPairs) {
 }
 
 TEST(Joint, TakesOneChartToTheOther) {
-  const TwoRows rows(std::vector<double>(kColumns, 0.0));
-  ASSERT_EQ(rows.border.size(), std::size_t(kColumns));
+  const TwoRows rows(std::vector<double>(kRowColumns, 0.0));
+  ASSERT_EQ(rows.border.size(), std::size_t(kRowColumns));
   const Joint joint(rows.topology, {rows.upper, rows.lower}, rows.border);
   EXPECT_LT(joint.motion().misfit, 1e-7);  // it is the square root of differences
   EXPECT_EQ(joint.triangles().size(), rows.topology.triangle_count());
@@ -146,7 +146,7 @@ TEST(Joint, TakesOneChartToTheOther) {
       EXPECT_NEAR(uvs[3 * t + c].y, p.y, 1e-6);
     }
   }
-  const double area = 2 * kColumns * rows.topology.scale * rows.topology.scale;
+  const double area = 2 * kRowColumns * rows.topology.scale * rows.topology.scale;
   const Outline upper = outline_of(rows.topology, rows.partition, rows.upper),
                 lower = outline_of(rows.topology, rows.partition, rows.lower);
   EXPECT_NEAR(joint.box(upper, lower), area, 1e-5 * area);
@@ -164,7 +164,7 @@ bool cross(glm::dvec2 a, glm::dvec2 b, glm::dvec2 c, glm::dvec2 d) {
 // from it.
 TEST(Joint, OverlapCountsSidesOnTheOther) {
   for (const double turn : {-0.1, -0.02, 0.03, 0.1}) {
-    const TwoRows rows(std::vector<double>(kColumns, turn));
+    const TwoRows rows(std::vector<double>(kRowColumns, turn));
     const std::span<const BorderEdge> glue = std::span(rows.border).first(3);
     const Joint joint(rows.topology, {rows.upper, rows.lower}, glue);
     const auto glued = [&](std::uint32_t h) {
@@ -206,7 +206,7 @@ TEST(Joint, TheLongestRunThatFitsIsFound) {
   std::bernoulli_distribution straight(0.7);
   std::size_t parts = 0;
   for (int round = 0; round < 30; ++round) {
-    std::vector<double> curvature(kColumns, 0.0);
+    std::vector<double> curvature(kRowColumns, 0.0);
     for (double& c : curvature) c = straight(random) ? 0 : turn(random);
     TwoRows rows(curvature);
     for (const double most : {0.001, 0.01, 0.03}) {

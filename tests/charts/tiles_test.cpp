@@ -15,7 +15,7 @@ namespace {
 
 constexpr double kMaxStretch = ChartOptions{}.max_stretch;
 
-ChartSet charts_of(const Mesh& mesh) {
+ChartSet usual_charts(const Mesh& mesh) {
   auto charts = make_charts(mesh.view(), {}, {});
   EXPECT_TRUE(charts.ok()) << charts.status().message();
   return std::move(*charts);
@@ -47,7 +47,7 @@ double longest_edge(const Mesh& mesh, std::uint32_t t) {
 TEST(Tiles, KeepWhatChartsPromise) {
   for (const Shape& shape : zoo()) {
     const Mesh mesh(shape);
-    const ChartSet whole = charts_of(mesh);
+    const ChartSet whole = usual_charts(mesh);
     for (const double share : {0.7, 0.3}) {
       const double limit = share * longest(whole);
       ChartSet pieces = whole;
@@ -75,7 +75,7 @@ TEST(Tiles, AreTheSameForEveryNumberOfThreads) {
   for (int i = 1; i < 12; ++i)
     many = together(many, moved(grid(60 + 20 * i, 4, 20 + i, 0.7), 1, {0, 2.0 * i, 0}));
   const Mesh mesh(many);
-  const ChartSet whole = charts_of(mesh);
+  const ChartSet whole = usual_charts(mesh);
   const std::vector<double> sides(whole.charts.size(), 6.5);
   ChartSet sets[2] = {whole, whole};
   for (const int threads : {1, 4}) {
@@ -97,7 +97,7 @@ TEST(Tiles, AreTheSameForEveryNumberOfThreads) {
 
 TEST(Tiles, OnceCancelledChartsAreWhatTheyWere) {
   const Mesh mesh(grid(200, 5, 40, 1));
-  ChartSet set = charts_of(mesh);
+  ChartSet set = usual_charts(mesh);
   const std::atomic<bool> stop{true};
   Context context;
   context.cancel = &stop;
@@ -129,7 +129,7 @@ TEST(Tiles, TellTheMaterialOfTheirFirstTriangle) {
 // Each cut of a regular strip runs straight across it.
 TEST(Tiles, AreCutAcross) {
   const Mesh mesh(grid(200, 5, 40, 1));
-  ChartSet set = charts_of(mesh);
+  ChartSet set = usual_charts(mesh);
   ASSERT_EQ(set.charts.size(), 1u);
   EXPECT_EQ(cut(mesh, 10.5, set), 1u);
   EXPECT_EQ(set.charts.size(), 4u);
@@ -142,7 +142,7 @@ TEST(Tiles, AreCutAcross) {
 TEST(Tiles, AreNotMuchShorterThanTheirTriangles) {
   for (const int n : {64, 200, 1000}) {
     const Mesh mesh(fan(n));
-    ChartSet set = charts_of(mesh);
+    ChartSet set = usual_charts(mesh);
     ASSERT_EQ(set.charts.size(), 1u);
     EXPECT_EQ(cut(mesh, 0.1 * longest(set), set), 1u);
     EXPECT_GE(set.charts.size(), 4u) << n;
@@ -150,7 +150,7 @@ TEST(Tiles, AreNotMuchShorterThanTheirTriangles) {
     EXPECT_EQ(check_charts(mesh.view(), set).fault, "");
   }
   const Mesh wall(grid(1, 1));
-  ChartSet set = charts_of(wall);
+  ChartSet set = usual_charts(wall);
   EXPECT_EQ(cut(wall, 0.1, set), 1u);
   EXPECT_EQ(set.charts.size(), 2u);
 }
@@ -161,7 +161,7 @@ TEST(Tiles, OfSmallTrianglesFitBesideANeedle) {
   const std::uint32_t tip = std::uint32_t(mesh.positions.size());
   mesh.positions.push_back({10, -0.1f, 0});
   for (const std::uint32_t v : {1u, 0u, tip}) mesh.indices.push_back(v);
-  ChartSet set = charts_of(mesh);
+  ChartSet set = usual_charts(mesh);
   ASSERT_EQ(set.charts.size(), 1u);
   EXPECT_EQ(cut(mesh, 2, set), 1u);
   std::size_t within = 0;
@@ -207,7 +207,7 @@ TEST(Tiles, EachPieceIsTurnedForPacking) {
 
 TEST(Tiles, WhatIsWithinItsLimitStays) {
   const Mesh mesh(together(grid(9, 9), moved(grid(100, 4, 20, 0.5), 1, {0, 2, 0})));
-  const ChartSet whole = charts_of(mesh);
+  const ChartSet whole = usual_charts(mesh);
   ChartSet set = whole;
   EXPECT_EQ(cut(mesh, 1000, set), 0u);
   EXPECT_EQ(bytes(set), bytes(whole));
@@ -224,7 +224,7 @@ Mesh spike() {
 
 TEST(Tiles, APieceKeepsToTheBoundThatTheWholeKeeps) {
   const Mesh mesh = spike();
-  ChartSet set = charts_of(mesh);
+  ChartSet set = usual_charts(mesh);
   ASSERT_EQ(set.charts.size(), 1u);
   ASSERT_GT(set.charts[0].distortion.stretch_linf, 1.3);
   EXPECT_EQ(cut(mesh, 0.15, set), 1u);
@@ -259,7 +259,7 @@ TEST(Tiles, PiecesOfGivenChartsKeepTheirShape) {
 // So does a piece with the spike of a given chart that keeps to the bound.
 TEST(Tiles, PiecesOfGivenChartsKeepTheirShapeBeyondTheBound) {
   Mesh mesh = spike();
-  const ChartSet own = charts_of(mesh);
+  const ChartSet own = usual_charts(mesh);
   for (const Vec2d& uv : own.uvs) mesh.texcoords.push_back({float(uv.x), float(uv.y)});
   mesh.texcoord_indices = own.triangle_uv;
   const auto given = make_charts(mesh.view(), {.keep_uv_charts = true}, {});
@@ -290,7 +290,7 @@ TEST(Tiles, TheWholeIsMeasuredAnew) {
 
 TEST(Tiles, LimitsOutOfRangeChangeNothing) {
   const Mesh mesh(grid(60, 6, 10, 1));
-  ChartSet set = charts_of(mesh);
+  ChartSet set = usual_charts(mesh);
   const std::size_t count = set.charts.size();
   const auto code = [&](const std::vector<double>& sides, double max_stretch) {
     const auto cut = cut_to_limits(mesh.view(), {sides, max_stretch}, set, {});
@@ -308,7 +308,7 @@ TEST(Tiles, MayHaveTurnedTriangles) {
   Mesh mesh(grid(60, 6, 10, 1));
   for (std::size_t i = 0; i < mesh.indices.size(); i += 9)
     std::swap(mesh.indices[i + 1], mesh.indices[i + 2]);
-  ChartSet set = charts_of(mesh);
+  ChartSet set = usual_charts(mesh);
   const std::vector<std::uint32_t> turned = set.flipped_triangles;
   ASSERT_FALSE(turned.empty());
   EXPECT_EQ(cut(mesh, 2.6, set), 1u);
@@ -352,7 +352,7 @@ TEST(Tiles, TakeTrianglesWithoutAreaAlong) {
   for (const bool first : {false, true}) {
     Mesh mesh(sheet);
     if (first) std::reverse(mesh.indices.begin(), mesh.indices.end());
-    ChartSet set = charts_of(mesh);
+    ChartSet set = usual_charts(mesh);
     ASSERT_GT(set.repairs.degenerate_triangles, 20u);
     EXPECT_EQ(cut(mesh, 2.6, set), 1u);
     EXPECT_EQ(set.charts.size(), 4u);

@@ -12,7 +12,7 @@ namespace atlas::test {
 namespace {
 
 // The cone without its base.
-Shape closed_cone(int around, int along, double half_angle) {
+Shape open_cone(int around, int along, double half_angle) {
   Shape shape{"closed cone", {{0, 0, 0}}, {}};
   const auto at = [&](int ring, int i) {
     return std::uint32_t(1 + (ring - 1) * around + i % around);
@@ -38,7 +38,7 @@ Shape closed_cone(int around, int along, double half_angle) {
 
 TEST(Tips, OfAConeIsItsApex) {
   for (const double half_angle : {0.2, 0.9, 1.4}) {
-    const Topology topology = topology_of(closed_cone(40, 10, half_angle));
+    const Topology topology = topology_of(open_cone(40, 10, half_angle));
     const std::vector<std::uint32_t> tips = find_tips(topology);
     ASSERT_EQ(tips.size(), 1u) << half_angle;
     EXPECT_EQ(topology.source_vertex[topology.corner_vertex[tips[0]]], 0u);
@@ -65,7 +65,7 @@ TEST(Tips, AreNotFoundWhereAllIsCurvedNorWhereNothingIs) {
 }
 
 TEST(Tips, LieOnTheBordersOfCells) {
-  const Topology topology = topology_of(closed_cone(40, 10, 0.9));
+  const Topology topology = topology_of(open_cone(40, 10, 0.9));
   const std::vector<std::uint32_t> tips = find_tips(topology);
   Cells cells{std::vector<std::uint32_t>(topology.triangle_count(), 0), 1};
   divide_at_tips(topology, tips, cells);
@@ -87,7 +87,7 @@ TEST(Tips, ClosedConesTakeFewCharts) {
   for (const int around : {24, 40, 200}) {
     for (const int rows : {1, 12}) {
       for (const double half_angle : {0.2, 0.5, 1.0, 1.4}) {
-        const Mesh mesh(closed_cone(around, rows, half_angle));
+        const Mesh mesh(open_cone(around, rows, half_angle));
         const Result<ChartSet> set = make_charts(mesh.view(), {}, {});
         ASSERT_TRUE(set.ok());
         EXPECT_EQ(check_charts(mesh.view(), *set).fault, "");

@@ -39,10 +39,10 @@ bool is_removed(const TempFolder& folder, const std::string& name) {
 TEST(Leftovers, AreKnownByTheirWholeNames) {
   const TempFolder folder;
   const std::string ended = mark_of_an_ended_process();
-  for (const char* end : {".part", ".before", ".part.7", ".part.7.obj", ".before.12.png"})
+  for (const char* end : {".part", ".part.7", ".part.7.obj"})
     EXPECT_TRUE(is_removed(folder, ".world." + ended + end)) << end;
   EXPECT_FALSE(is_removed(folder, "world." + ended + ".part.7.obj")) << "not hidden";
-  for (const char* end : {"", ".obj", "x.part.1", ".partial.obj", ".beforehand"})
+  for (const char* end : {"", ".obj", "x.part.1", ".partial.obj", ".before.12.png"})
     EXPECT_FALSE(is_removed(folder, ".world." + ended + end)) << end;
 }
 

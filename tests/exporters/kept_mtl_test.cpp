@@ -15,7 +15,7 @@ using nlohmann::json;
 using std::filesystem::path;
 using Lines = std::vector<std::string>;
 
-const ReadOptions kRest{
+const ReadOptions kMtlRest{
     .unlit_textures = true, .encoded_textures = true, .normals = true, .rest = true};
 
 // All lines of an MTL stay. Textures become comments, because the uvs for them are not in the file.
@@ -29,7 +29,7 @@ TEST(KeptMtl, LinesOfMtl) {
       "s.obj",
       "mtllib m.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nusemtl a\nf 1/1 2/1 3/1\nusemtl b\n"
       "f 1/1 3/1 2/1\n");
-  const WorldFile written = keep(obj, folder / "w.obj", kRest);
+  const WorldFile written = keep(obj, folder / "w.obj", kMtlRest);
   EXPECT_EQ(written.not_kept, (Lines{"5 x textures of materials (lines of the MTL, now comments)",
                                      "2 x triangles with uvs of their own"}));
   const std::string mtl = TempFolder::read(folder / "w.mtl");
@@ -39,11 +39,11 @@ TEST(KeptMtl, LinesOfMtl) {
             std::string::npos)
       << mtl;
   EXPECT_NE(mtl.find("\nnewmtl b\nKd 0.25 0 0\nd -halo 0.3\n"), std::string::npos) << mtl;
-  const auto back = read_scene(folder / "w.obj", kRest, {});
+  const auto back = read_scene(folder / "w.obj", kMtlRest, {});
   ASSERT_TRUE(back.ok()) << back.status().message();
   EXPECT_TRUE(back->scene.textures.empty());
   EXPECT_EQ(
-      keep(obj, folder / "w.glb", kRest).not_kept,
+      keep(obj, folder / "w.glb", kMtlRest).not_kept,
       (Lines{"1 x lines of the MTL: Ka", "1 x lines of the MTL: Ks", "1 x lines of the MTL: MAP_Ks",
              "1 x lines of the MTL: Ni", "1 x lines of the MTL: Ns", "1 x lines of the MTL: Tr",
              "1 x lines of the MTL: bump", "1 x lines of the MTL: d", "1 x lines of the MTL: illum",
@@ -56,8 +56,8 @@ TEST(KeptMtl, SmoothingGroupsAndInnerGroupsAreCounted) {
   const std::string points = "v 0 0 0\nv 1 0 0\nv 0 1 0\nvn 0 0 1\n";
   const auto not_kept = [&](const std::string& lines) {
     const path obj = folder.write("s.obj", points + lines);
-    const Lines in_obj = keep(obj, folder / "w.obj", kRest).not_kept;
-    EXPECT_EQ(keep(obj, folder / "w.glb", kRest).not_kept, in_obj);
+    const Lines in_obj = keep(obj, folder / "w.obj", kMtlRest).not_kept;
+    EXPECT_EQ(keep(obj, folder / "w.glb", kMtlRest).not_kept, in_obj);
     return in_obj;
   };
   const std::string plain = "f 1 2 3\n", with_normals = "f 1//1 2//1 3//1\n";
@@ -84,13 +84,13 @@ TEST(KeptMtl, OpacityThatDependsOnTheViewIsNotLostInSilence) {
   const path obj = folder.write("s.obj",
                                 "mtllib m.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl a\nf 1 2 3\n"
                                 "usemtl b\nf 1 3 2\nusemtl c\nf 1 2 3\nusemtl e\nf 1 2 3\n");
-  EXPECT_EQ(keep(obj, folder / "w.obj", kRest).not_kept, Lines{});
+  EXPECT_EQ(keep(obj, folder / "w.obj", kMtlRest).not_kept, Lines{});
   const std::string mtl = TempFolder::read(folder / "w.mtl");
   EXPECT_NE(mtl.find("newmtl a\nKd 1 1 1\nd 0.5\nd -halo 0.3\nnewmtl b\nKd 1 1 1\nd -HALO 0.3\n"
                      "newmtl c\nKd 1 1 1\nd 2\nnewmtl e\nKd 1 1 1\nd 0.5\n"),
             std::string::npos)
       << mtl;
-  EXPECT_EQ(keep(obj, folder / "w.glb", kRest).not_kept, Lines{"3 x lines of the MTL: d"});
+  EXPECT_EQ(keep(obj, folder / "w.glb", kMtlRest).not_kept, Lines{"3 x lines of the MTL: d"});
   EXPECT_EQ(keep(obj, folder / "v.glb", {}).not_kept, Lines{"3 x lines of the MTL: d"});
 }
 
@@ -105,7 +105,7 @@ TEST(KeptMtl, EmissionOfMtlInGltfAndBack) {
       folder.write("s.obj",
                    "mtllib m.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl lamp\nf 1 2 3\n"
                    "usemtl dim\nf 1 3 2\nusemtl off\nf 1 2 3\nusemtl screen\nf 1 2 3\n");
-  EXPECT_EQ(keep(obj, folder / "w.gltf", kRest).not_kept,
+  EXPECT_EQ(keep(obj, folder / "w.gltf", kMtlRest).not_kept,
             (Lines{"1 x colours of materials beyond 0 to 1, limited to it",
                    "1 x lines of the MTL: Ke", "1 x lines of the MTL: map_Ke"}));
   const json document = json::parse(TempFolder::read(folder / "w.gltf"));
@@ -117,7 +117,7 @@ TEST(KeptMtl, EmissionOfMtlInGltfAndBack) {
   EXPECT_FALSE(materials[1].contains("extensions"));
   EXPECT_FALSE(materials[2].contains("emissiveFactor"));
   EXPECT_FALSE(materials[3].contains("emissiveFactor"));
-  keep(folder / "w.gltf", folder / "back.obj", kRest);
+  keep(folder / "w.gltf", folder / "back.obj", kMtlRest);
   const std::string mtl = TempFolder::read(folder / "back.mtl");
   EXPECT_NE(mtl.find("newmtl lamp\nKd 1 1 1\nKe 4 2 0\n"), std::string::npos) << mtl;
   EXPECT_EQ(mtl.find("newmtl off\nKd 1 1 1\nKe"), std::string::npos) << mtl;
@@ -132,7 +132,7 @@ TEST(KeptMtl, OpacityAndClampingOfMtlInGltf) {
       folder.write("s.obj",
                    "mtllib m.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvt 2 0\nvt 0 2\nusemtl a\n"
                    "f 1/1 2/2 3/3\nusemtl b\nf 1/1 3/3 2/2\n");
-  EXPECT_EQ(keep(obj, folder / "w.glb", kRest).not_kept, Lines{});
+  EXPECT_EQ(keep(obj, folder / "w.glb", kMtlRest).not_kept, Lines{});
   const auto back = read_scene(folder / "w.glb", {}, {});
   ASSERT_TRUE(back.ok()) << back.status().message();
   const std::vector<Material>& materials = back->scene.materials;
@@ -154,7 +154,7 @@ TEST(KeptMtl, UnlitTexturesStayUnlitInGltf) {
       folder.write("s.obj",
                    "mtllib m.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvt 2 0\nvt 0 2\nusemtl a\n"
                    "f 1/1 2/2 3/3\nusemtl b\nf 1/1 3/3 2/2\n");
-  EXPECT_EQ(keep(obj, folder / "w.gltf", kRest).not_kept, Lines{});
+  EXPECT_EQ(keep(obj, folder / "w.gltf", kMtlRest).not_kept, Lines{});
   const json document = json::parse(TempFolder::read(folder / "w.gltf"));
   EXPECT_EQ(document["extensionsUsed"],
             (json{"KHR_materials_emissive_strength", "KHR_materials_unlit"}));

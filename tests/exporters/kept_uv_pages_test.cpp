@@ -45,7 +45,7 @@ Scene partly_mapped(bool all_of_paint) {
   return scene;
 }
 
-void write(const World& world, const std::filesystem::path& path) {
+void expect_kept(const World& world, const std::filesystem::path& path) {
   const auto written = test::write_kept(world, path);
   ASSERT_TRUE(written.ok()) << written.status().message();
 }
@@ -56,13 +56,13 @@ void keep_again(const std::filesystem::path& from, const std::filesystem::path& 
   ASSERT_TRUE(loaded.ok()) << loaded.status().message();
   World world = test::world_of(loaded->scene);
   world.info = {uv_page_text(100, 300)};
-  write(world, to);
+  expect_kept(world, to);
 }
 
 TEST(KeptUvPages, PartsWithoutUvsOfTheirOwnHaveThePageOfTheNewOnes) {
   const TempFolder folder;
   const Scene scene = partly_mapped(true);
-  write(wide_world_of(scene), folder / "w.glb");
+  expect_kept(wide_world_of(scene), folder / "w.glb");
   EXPECT_EQ(aspects_of(folder / "w.glb"), (Aspects{{"paint", 4}, {"wood # 2", 1}}));
   for (const auto& triangle : GltfOracle(folder / "w.glb").triangles()) {
     const bool same = triangle.attributes.at("TEXCOORD_0") == triangle.attributes.at("TEXCOORD_1");
@@ -76,7 +76,7 @@ TEST(KeptUvPages, PartsWithoutUvsOfTheirOwnHaveThePageOfTheNewOnes) {
 TEST(KeptUvPages, AMaterialOfBothKindsOfUvsHasNoPage) {
   const TempFolder folder;
   const Scene scene = partly_mapped(false);
-  write(wide_world_of(scene), folder / "w.glb");
+  expect_kept(wide_world_of(scene), folder / "w.glb");
   EXPECT_EQ(aspects_of(folder / "w.glb"), (Aspects{{"paint", 0}, {"wood # 2", 0}}));
 }
 
@@ -90,7 +90,7 @@ TEST(KeptUvPages, OfGltfWithoutAllUvsAreToldLikewise) {
        {"material", 1}});
   const auto loaded = read_scene(folder.write("s.glb", gltf.glb()), test::kGltfRest, {});
   ASSERT_TRUE(loaded.ok()) << loaded.status().message();
-  write(wide_world_of(loaded->scene), folder / "w.glb");
+  expect_kept(wide_world_of(loaded->scene), folder / "w.glb");
   EXPECT_EQ(aspects_of(folder / "w.glb"), (Aspects{{"mapped", 1}, {"plain", 4}}));
   keep_again(folder / "w.glb", folder / "again.glb");
   EXPECT_EQ(aspects_of(folder / "again.glb"), (Aspects{{"mapped", 1}, {"plain", 4}}));

@@ -19,7 +19,7 @@ namespace {
 
 constexpr double kCastle = 0.6;
 
-World world_of(const Triangles& triangles, double metres_per_unit) {
+World world_in_metres(const Triangles& triangles, double metres_per_unit) {
   World world;
   world.up = Up::z;
   world.metres_per_unit = metres_per_unit;
@@ -39,7 +39,7 @@ World world_of(const Triangles& triangles, double metres_per_unit) {
 World box_world(const glm::dvec3& size, bool room, double metres_per_unit = 1) {
   Triangles box;
   add_box(box, {0, 0, 0}, {float(size.x), float(size.y), float(size.z)}, room);
-  return world_of(box, metres_per_unit);
+  return world_in_metres(box, metres_per_unit);
 }
 
 struct Extent {

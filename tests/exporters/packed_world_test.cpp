@@ -21,26 +21,26 @@ using test::TempFolder;
 using test::wavy_world;
 
 // A corner as whole numbers: of steps of the positions, and of 65535ths of the uvs.
-using Corner = std::array<std::int64_t, 5>;
-using Triangle = std::array<Corner, 3>;
+using PackedCorner = std::array<std::int64_t, 5>;
+using PackedTriangle = std::array<PackedCorner, 3>;
 
-Corner corner(const Vec3f& p, const Vec2f& uv, double step) {
+PackedCorner corner(const Vec3f& p, const Vec2f& uv, double step) {
   const auto whole = [](double v) { return std::int64_t(std::llround(v)); };
   return {whole(p.x / step), whole(p.y / step), whole(p.z / step), whole(65535 * uv.x),
           whole(65535 * (1 - double(uv.y)))};
 }
 
 // Begins with the least corner, and keeps the orientation.
-void add(std::vector<Triangle>& triangles, Triangle t) {
+void add(std::vector<PackedTriangle>& triangles, PackedTriangle t) {
   std::rotate(t.begin(), std::min_element(t.begin(), t.end()), t.end());
   triangles.push_back(t);
 }
 
-std::vector<Triangle> triangles_of(const World& world, double step) {
-  std::vector<Triangle> result;
+std::vector<PackedTriangle> triangles_of(const World& world, double step) {
+  std::vector<PackedTriangle> result;
   for (const Page& page : world.pages)
     for (std::size_t t = 0; t < page.indices.size(); t += 3) {
-      Triangle triangle;
+      PackedTriangle triangle;
       for (std::size_t k = 0; k < 3; ++k)
         triangle[k] =
             corner(world.positions[page.indices[t + k]], world.uvs[page.uv_indices[t + k]], step);
@@ -50,10 +50,10 @@ std::vector<Triangle> triangles_of(const World& world, double step) {
   return result;
 }
 
-std::vector<Triangle> triangles_of(const Scene& scene, double step) {
-  std::vector<Triangle> result;
+std::vector<PackedTriangle> triangles_of(const Scene& scene, double step) {
+  std::vector<PackedTriangle> result;
   for (std::size_t t = 0; t < scene.indices.size(); t += 3) {
-    Triangle triangle;
+    PackedTriangle triangle;
     for (std::size_t k = 0; k < 3; ++k)
       triangle[k] = corner(scene.positions[scene.indices[t + k]],
                            scene.texcoords[scene.texcoord_indices[t + k]], step);
@@ -63,7 +63,7 @@ std::vector<Triangle> triangles_of(const Scene& scene, double step) {
   return result;
 }
 
-std::uintmax_t write(const World& world, const std::filesystem::path& path) {
+std::uintmax_t written_bytes(const World& world, const std::filesystem::path& path) {
   for (const Page& page : world.pages)
     EXPECT_TRUE(write_png(path.parent_path() / page.image, Image8(8, 8, 3, 50), {}).ok());
   AtomicFiles files;
@@ -93,7 +93,7 @@ TEST(PackedGltf, ReadsBackOnTheGrid) {
   for (const char* name : {"packed.gltf", "packed.glb"}) {
     for (Page& page : world.pages) page.image_source = folder / page.image;
     world.compress_slip = kStep;
-    write(world, folder / name);
+    written_bytes(world, folder / name);
     const auto loaded = read_scene(folder / name, {}, {});
     ASSERT_TRUE(loaded.ok()) << loaded.status().message();
     EXPECT_TRUE(loaded->defects.empty()) << loaded->defects.lines().front();
@@ -107,7 +107,7 @@ TEST(PackedGltf, PositionsStayEqualAcrossPages) {
   const TempFolder folder;
   World world = wavy_world(40, 4);
   world.compress_slip = 1;
-  write(world, folder / "packed.gltf");
+  written_bytes(world, folder / "packed.gltf");
   const auto loaded = read_scene(folder / "packed.gltf", {}, {});
   ASSERT_TRUE(loaded.ok()) << loaded.status().message();
   std::vector<std::array<float, 3>> before, after;
@@ -124,7 +124,7 @@ TEST(PackedGltf, PositionsStayFloatsWhereAGridWouldMoveThemTooFar) {
   const TempFolder folder;
   World world = wavy_world(40, 2);
   world.compress_slip = 1e-3;  // the sheet is 2e4 high
-  write(world, folder / "packed.gltf");
+  written_bytes(world, folder / "packed.gltf");
   const auto loaded = read_scene(folder / "packed.gltf", {}, {});
   ASSERT_TRUE(loaded.ok()) << loaded.status().message();
   EXPECT_EQ(triangles_of(loaded->scene, 1e-12), triangles_of(world, 1e-12));
@@ -133,9 +133,9 @@ TEST(PackedGltf, PositionsStayFloatsWhereAGridWouldMoveThemTooFar) {
 TEST(PackedGltf, TakesLessThanHalf) {
   const TempFolder folder;
   World world = world_on_a_grid(1.0 / 1024);
-  const auto plain = write(world, folder / "plain.gltf");
+  const auto plain = written_bytes(world, folder / "plain.gltf");
   world.compress_slip = 1;
-  const auto packed = write(world, folder / "packed.gltf");
+  const auto packed = written_bytes(world, folder / "packed.gltf");
   EXPECT_LT(2 * packed, plain);
 }
 

@@ -20,7 +20,7 @@ using test::vrml_number;
 using test::VrmlNode;
 using test::wavy_world;
 
-std::string write(const World& world, const std::filesystem::path& path) {
+std::string written_vrml(const World& world, const std::filesystem::path& path) {
   AtomicFiles files;
   const auto result = write_vrml(world, path, files, {});
   EXPECT_TRUE(result.ok()) << result.status().message();
@@ -103,7 +103,7 @@ TEST(Vrml, ReadsBackExactly) {
   for (const bool far : {false, true}) {
     World world = wavy_world(40, 3);
     if (far) world.origin = {1048576, -65536, 0};
-    const Nodes nodes = parse_vrml(write(world, folder / "w.wrl"));
+    const Nodes nodes = parse_vrml(written_vrml(world, folder / "w.wrl"));
     const auto shapes = of_type(nodes, "Shape");
     ASSERT_EQ(shapes.size(), 3u);
     for (std::size_t i = 0; i < shapes.size(); ++i) expect_shape(*shapes[i], world, i);
@@ -166,7 +166,7 @@ TEST(Vrml, InfoAndNavigation) {
   World world = wavy_world(4, 1);
   world.metres_per_unit = 0.01;
   world.viewpoint.inside = true;
-  const Nodes nodes = parse_vrml(write(world, folder / "w.wrl"));
+  const Nodes nodes = parse_vrml(written_vrml(world, folder / "w.wrl"));
   const auto info = of_type(nodes, "WorldInfo");
   ASSERT_EQ(info.size(), 1u);
   EXPECT_EQ(info[0]->field("title"), std::vector<std::string>{R"("a \"wavy\" \\ sheet")"});
@@ -179,7 +179,7 @@ TEST(Vrml, InfoAndNavigation) {
   world.viewpoint.fov = 0.5;
   world.up = Up::z;
   world.title = "~";
-  const Nodes outside = parse_vrml(write(world, folder / "o.wrl"));
+  const Nodes outside = parse_vrml(written_vrml(world, folder / "o.wrl"));
   EXPECT_EQ(of_type(outside, "NavigationInfo")[0]->field("type")[0], "\"EXAMINE\"");
   EXPECT_EQ(of_type(outside, "WorldInfo")[0]->field("title")[0], "\"~\"");
   EXPECT_EQ(of_type(outside, "WorldInfo")[0]->field("info").back(),
@@ -195,7 +195,7 @@ TEST(Vrml, AvatarsStayFloatsInAnyUnit) {
   World world = wavy_world(4, 1);
   for (const double unit : {1e-300, 1e-40, 1e45, 1e300}) {
     world.metres_per_unit = unit;
-    const Nodes nodes = parse_vrml(write(world, folder / "w.wrl"));
+    const Nodes nodes = parse_vrml(written_vrml(world, folder / "w.wrl"));
     const auto navigation = of_type(nodes, "NavigationInfo");
     ASSERT_EQ(navigation.size(), 1u);
     for (const double v : numbers(navigation[0]->field("avatarSize"))) {
@@ -221,7 +221,7 @@ TEST(Vrml, ViewpointLooksWhereItShould) {
       world.origin = {100, 0, 0};
       world.viewpoint.position = {1, 2, 3};
       world.viewpoint.direction = from_glm(d);
-      const Nodes nodes = parse_vrml(write(world, folder / "v.wrl"));
+      const Nodes nodes = parse_vrml(written_vrml(world, folder / "v.wrl"));
       const VrmlNode& transform = *of_type(nodes, "Transform").at(0);
       const VrmlNode& view = transform.child("children");
       glm::dmat3 outer(1);
@@ -244,7 +244,7 @@ TEST(Vrml, NamesAreEncodedAndPagesMayBeEmptyOrBare) {
   world.pages[0].image = "my:caf\xc3\xa9 #1.png";
   world.pages[1].image.clear();
   world.pages.push_back({"empty.png", {}, {}, {}});
-  const Nodes nodes = parse_vrml(write(world, folder / "n.wrl"));
+  const Nodes nodes = parse_vrml(written_vrml(world, folder / "n.wrl"));
   const auto shapes = of_type(nodes, "Shape");
   ASSERT_EQ(shapes.size(), 2u);
   EXPECT_EQ(shapes[0]->child("appearance").child("texture").field("url")[0],
@@ -261,7 +261,7 @@ TEST(Vrml, AWorldWithoutLightIsLitByTheViewer) {
   const TempFolder folder;
   World world = wavy_world(6, 2);
   for (Page& page : world.pages) page.image.clear();
-  const Nodes nodes = parse_vrml(write(world, folder / "n.wrl"));
+  const Nodes nodes = parse_vrml(written_vrml(world, folder / "n.wrl"));
   EXPECT_EQ(of_type(nodes, "NavigationInfo")[0]->field("headlight"),
             std::vector<std::string>{"TRUE"});
   for (const VrmlNode* shape : of_type(nodes, "Shape")) {
@@ -274,10 +274,10 @@ TEST(Vrml, AWorldWithoutLightIsLitByTheViewer) {
 TEST(Vrml, OneSidedTrianglesAreASolidShape) {
   const TempFolder folder;
   World world = wavy_world(6, 2);
-  const std::string plain = write(world, folder / "w.wrl");
+  const std::string plain = written_vrml(world, folder / "w.wrl");
   const std::size_t triangles = world.pages[1].indices.size() / 3;
   world.pages[1].one_sided.assign(triangles, false);
-  EXPECT_EQ(write(world, folder / "w.wrl"), plain);
+  EXPECT_EQ(written_vrml(world, folder / "w.wrl"), plain);
 
   std::vector<std::uint32_t>
       corners[2];  // of the triangles seen from both sides, and of the others
@@ -286,7 +286,7 @@ TEST(Vrml, OneSidedTrianglesAreASolidShape) {
     for (std::size_t k = 3 * t; k < 3 * t + 3; ++k)
       corners[t % 3 == 1].push_back(world.pages[1].indices[k]);
   }
-  const Nodes nodes = parse_vrml(write(world, folder / "w.wrl"));
+  const Nodes nodes = parse_vrml(written_vrml(world, folder / "w.wrl"));
   const auto shapes = of_type(nodes, "Shape");
   ASSERT_EQ(shapes.size(), 3u);
   expect_shape(*shapes[0], world, 0);
@@ -307,7 +307,7 @@ TEST(Vrml, OneSidedTrianglesAreASolidShape) {
     }
   }
   world.pages[1].one_sided.assign(triangles, true);
-  const Nodes solid = parse_vrml(write(world, folder / "w.wrl"));
+  const Nodes solid = parse_vrml(written_vrml(world, folder / "w.wrl"));
   ASSERT_EQ(of_type(solid, "Shape").size(), 2u);
   EXPECT_EQ(of_type(solid, "Shape")[1]->child("geometry").field("solid")[0], "TRUE");
 }
@@ -315,8 +315,8 @@ TEST(Vrml, OneSidedTrianglesAreASolidShape) {
 TEST(Vrml, GzipHoldsTheSameText) {
   const TempFolder folder;
   const World world = wavy_world(50, 2);
-  const std::string plain = write(world, folder / "w.wrl");
-  const std::string zipped = write(world, folder / "w.wrz");
+  const std::string plain = written_vrml(world, folder / "w.wrl");
+  const std::string zipped = written_vrml(world, folder / "w.wrz");
   EXPECT_LT(zipped.size(), plain.size());
   EXPECT_EQ(zipped.substr(0, 2), "\x1f\x8b");
   gzFile file = gzopen((folder / "w.wrz").c_str(), "rb");

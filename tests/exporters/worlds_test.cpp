@@ -297,7 +297,7 @@ TEST(Worlds, NamesOfFilesAndFormats) {
   EXPECT_EQ(safe_file_name(""), "world");
   EXPECT_TRUE(check_world_extension("a.WRZ").ok());
   EXPECT_EQ(check_world_extension("a.stl").message(),
-            "a.stl: the target must end in .wrl, .wrz, .obj, .gltf or .glb");
+            "a.stl: the target must end in .wrl, .wrz, .obj, .gltf, .glb or .html");
   EXPECT_TRUE(check_world_extension({}).message().starts_with("no name given: the target must"));
 }
 

@@ -1,5 +1,7 @@
+#include "libatlas/image/image_io.h"
 #include "libatlas/scene/check_scene.h"
 #include "libatlas/scene/reader.h"
+#include "tests/fuzz/effort.h"
 #include "tests/fuzz/fuzz_files.h"
 
 namespace atlas::test {
@@ -12,11 +14,18 @@ FuzzResult fuzz_reader(FuzzBytes bytes, const std::string& extension) {
   options.normals = choice & 4;
   options.rest = choice & 8;
   options.lightmap = choice & 16;
+  options.confine = choice & 32;
   Context context;
   context.threads = 1;
   const FuzzFolder folder;
-  const Result<LoadedScene> loaded =
-      read_scene(folder.write_scene(bytes, extension), options, context);
+  const std::filesystem::path path = folder.write_scene(bytes, extension);
+  if (options.load_textures)
+    static_cast<void>(check_image_module(extension));  // takes its time once
+  const Effort effort;
+  const Result<LoadedScene> loaded = read_scene(path, options, context);
+  if (std::string much = effort.fault(loaded.ok() ? loaded->scene.triangle_count() : 0);
+      !much.empty())
+    return {much, loaded.ok()};
   if (!loaded.ok()) {
     const std::string& message = loaded.status().message();
     const bool named = message.find(folder.path().string()) != message.npos;

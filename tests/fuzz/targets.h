@@ -17,7 +17,8 @@ struct FuzzResult {
 
 // Reads the bytes as a scene file with this extension ("obj"), with options that their sum chooses.
 // What follows a line `%%` is a second file, second.mtl and second.bin, which the scene may name.
-// The reader must return a sound scene, or an error of one line that names a file and a remedy.
+// The reader must return a sound scene, or an error of one line that names a file and a remedy, in
+// time.
 FuzzResult fuzz_reader(FuzzBytes bytes, const std::string& extension);
 
 // Reads the bytes as the file of a small mesh's illumination, "txt" or a scene file. Likewise a
@@ -48,7 +49,7 @@ FuzzResult fuzz_export(FuzzBytes bytes, const std::string& extension);
 
 // Unwraps a small mesh, and judges the atlas with the tests' own measures. Bytes 0 and 1 choose
 // options, bytes 2 to 4 the kind of mesh, its size and how materials alternate; vertices follow,
-// then triangles as three bytes each.
+// then triangles as three bytes each. Charts must be made in time.
 FuzzResult fuzz_unwrap(FuzzBytes bytes);
 
 }  // namespace atlas::test

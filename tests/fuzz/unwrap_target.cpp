@@ -2,6 +2,7 @@
 #include <vector>
 
 #include "libatlas/unwrap/unwrap.h"
+#include "tests/fuzz/effort.h"
 #include "tests/fuzz/targets.h"
 #include "tests/support/atlas_measure.h"
 
@@ -158,10 +159,15 @@ FuzzResult fuzz_unwrap(FuzzBytes data) {
   view.positions = mesh.positions;
   view.indices = mesh.indices;
   view.texcoords = mesh.texcoords;
+  if (!mesh.texcoords.empty()) view.texcoord_indices = mesh.indices;
   view.materials = mesh.materials;
   view.density = mesh.density;
   Context context;
   context.threads = 1;
+  const Effort effort;  // of charts alone: packing has other bounds
+  const Result<ChartSet> charts = make_charts(view, options.charts, context);
+  if (std::string much = effort.fault(mesh.indices.size() / 3); !much.empty()) return {much};
+  if (!charts.ok()) return {"no charts: " + charts.status().message()};
   const Result<UnwrappedMesh> flat = unwrap_mesh(view, options, context);
   if (flat.ok()) return {judge(mesh, *flat, options.charts), true};
   // The mesh and the options are valid; only the page may be too small.

@@ -33,33 +33,6 @@ void expect_claim(const std::string& file, const ImageClaim& want, std::size_t n
   }
 }
 
-// A segment, or a frame header of 700 x 300 texels (the height comes first) of three channels.
-std::string segment(char marker, const std::string& data) {
-  return std::string("\xff") + marker + big(std::uint32_t(data.size()) + 2, 2) + data;
-}
-std::string frame(char marker) {
-  return segment(marker, "\x08" + big(300, 2) + big(700, 2) + "\3" + std::string(9, '\1'));
-}
-
-TEST(ImageClaim, OfAJpegFileIsThatOfItsFrame) {
-  const std::string start = "\xff\xd8";
-  // What a segment that is no frame holds may look like one.
-  const std::string decoy = big(9, 2) + frame('\xc0').substr(2);
-  std::vector<std::string> before = {
-      "",         "\xff",         "\xff\xff\xff",
-      "stray",    "\xff\x01",     "\xff\xd0",
-      "\xff\xd8", "\xff\xd7\xff", segment('\xfe', std::string(70, '\xc0'))};
-  for (const char marker : {'\xc4', '\xc8', '\xcc', '\xdb', '\xe1', '\xbf'})
-    before.push_back(segment(marker, decoy));
-  before.push_back(std::string("\xff\x00", 2));
-  // Segments hold their length at least, even if they say that they are shorter.
-  for (const std::uint32_t length : {0u, 1u, 2u}) before.push_back("\xff\xe1" + big(length, 2));
-  for (const std::string& lead : before)
-    for (const char marker : {'\xc0', '\xc1', '\xc2', '\xc3', '\xc5', '\xcb', '\xcf'})
-      expect_claim(start + lead + frame(marker), {700, 300, 3}, 2 + lead.size() + 10);
-  EXPECT_FALSE(claim(start + segment('\xc4', decoy) + std::string(30, '\0')));
-}
-
 TEST(ImageClaim, OfAGifFileIsItsScreen) {
   expect_claim("GIF89a" + little(700, 2) + little(300, 2) + "abc", {700, 300, 4}, 10);
   expect_claim("GIF87a" + little(65535, 2) + little(1, 2), {65535, 1, 4}, 10);

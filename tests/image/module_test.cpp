@@ -23,8 +23,8 @@ std::string said_by(const fs::path& probe, const fs::path& image) {
 }
 
 fs::path image_in(const TempFolder& folder) {
-  EXPECT_TRUE(write_png(folder / "a.png", Image8(2, 2, 3, 77), {}).ok());
-  return folder / "a.png";
+  EXPECT_TRUE(write_exr(folder / "a.exr", ImageF(2, 2, 3, 77)).ok());
+  return folder / "a.exr";
 }
 
 TEST(ImageModule, IsFoundInTheTreeItWasBuiltIn) {
@@ -41,6 +41,16 @@ TEST(ImageModule, OfTheBuildIsNotLoadedFromElsewhere) {
   fs::copy_file(LIBATLAS_TEST_PROBE, folder / "probe");
   const std::string said = said_by(folder / "probe", image_in(folder));
   EXPECT_NE(said.find("belongs beside the program"), std::string::npos) << said;
+}
+
+// PNG and JPEG are read and written without it.
+TEST(ImageModule, IsNotLoadedForPng) {
+  const TempFolder folder;
+  fs::copy_file(LIBATLAS_TEST_PROBE, folder / "probe");
+  fs::copy_file(LIBATLAS_TEST_OTHER_MODULE,
+                folder / fs::path(LIBATLAS_TEST_OTHER_MODULE).filename().string());
+  ASSERT_TRUE(write_png(folder / "a.png", Image8(2, 2, 3, 77), {}).ok());
+  EXPECT_EQ(said_by(folder / "probe", folder / "a.png"), "read\n");
 }
 
 TEST(ImageModule, OfAnotherBuildIsRefused) {

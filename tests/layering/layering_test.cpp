@@ -19,16 +19,37 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Returns the folders in the order in which libatlas/CMakeLists.txt adds them.
-std::vector<std::string> folder_order() {
-  const std::string text = read(kRoot / "libatlas/CMakeLists.txt");
+struct Component {
+  std::string name;
+  std::vector<std::string> folders;
+};
+
+// Returns the components in the order in which libatlas/CMakeLists.txt adds them.
+std::vector<Component> components() {
+  std::istringstream text(read(kRoot / "libatlas/CMakeLists.txt"));
+  std::vector<Component> result;
   std::smatch match;
-  if (!std::regex_search(text, match, std::regex(R"(foreach\(module ([a-z_ \n]+)\))"))) return {};
-  std::istringstream names(match[1]);
+  for (std::string line; std::getline(text, line);) {
+    if (!std::regex_match(line, match, std::regex(R"(atlas_component\(([a-z]+) ([a-z_ ]+)\))")))
+      continue;
+    result.push_back({match[1], {}});
+    std::istringstream names(match[2]);
+    for (std::string name; names >> name;) result.back().folders.push_back(name);
+  }
+  return result;
+}
+
+// Returns the folders in the order in which a folder may include those before it.
+std::vector<std::string> folder_order() {
   std::vector<std::string> order;
-  for (std::string name; names >> name;) order.push_back(name);
+  for (const Component& c : components())
+    order.insert(order.end(), c.folders.begin(), c.folders.end());
   return order;
 }
+
+// What includes of other packages look like.
+const std::regex kThirdParty(
+    R"((glm|Eigen|CGAL|OpenMesh|OpenImageIO|OIIO|tbb|oneapi|nlohmann|fmt|embree[34]|epoxy|GLFW|imgui|boost|CLI|draco)[/.].*|(imgui|tiny_gltf|zlib|meshoptimizer|png|jpeglib|jerror)\.h)");
 
 struct Include {
   std::string target;  // the text between the quotes or brackets
@@ -139,16 +160,38 @@ TEST(Layering, FoldersWithinAFolderIncludeOnlyThoseAboveThem) {
 }
 
 TEST(Layering, PublicHeadersShowNoThirdParty) {
-  const std::regex heavy(
-      R"((glm|Eigen|CGAL|OpenMesh|OpenImageIO|OIIO|tbb|oneapi|nlohmann|fmt|embree[34]|epoxy|GLFW|imgui|boost|CLI)[/.].*|imgui\.h|tiny_gltf\.h|zlib\.h)");
   int seen = 0;
   for (const fs::path& path : sources(".h")) {
     if (internal(path)) continue;
     ++seen;
     for (const Include& include : includes_of(path)) {
-      EXPECT_FALSE(std::regex_match(include.target, heavy))
+      EXPECT_FALSE(std::regex_match(include.target, kThirdParty))
           << place(path, include.line) << ": a public header includes " << include.target
           << " (make the header internal, or hide it in the .cpp)";
+    }
+  }
+  EXPECT_GT(seen, 20);
+}
+
+// The component uv is what others embed: it includes headers of Eigen, GLM and fmt, and in one file
+// each what can be left out of a build.
+TEST(Layering, TheComponentUvUsesFewPackages) {
+  const std::map<std::string, std::string> where{{"core/run_chunks_tbb.cpp", "oneapi/"},
+                                                 {"core/predicates.cpp", "CGAL/"},
+                                                 {"param/cgal_backend.cpp", "CGAL/"}};
+  ASSERT_FALSE(components().empty());
+  ASSERT_EQ(components()[0].name, "uv");
+  int seen = 0;
+  for (const std::string& folder : components()[0].folders) {
+    for (const fs::path& path : sources("", ("libatlas/" + folder).c_str())) {
+      const auto other = where.find(fs::relative(path, kRoot / "libatlas").string());
+      for (const Include& include : includes_of(path)) {
+        if (!std::regex_match(include.target, kThirdParty)) continue;
+        ++seen;
+        EXPECT_TRUE(std::regex_match(include.target, std::regex("(glm|Eigen|fmt)/.*")) ||
+                    (other != where.end() && include.target.rfind(other->second, 0) == 0))
+            << place(path, include.line) << ": " << include.target;
+      }
     }
   }
   EXPECT_GT(seen, 20);

@@ -13,7 +13,7 @@
 namespace atlas {
 namespace {
 
-constexpr PackPreset kPresets[] = {PackPreset::fast, PackPreset::standard, PackPreset::best};
+constexpr PackPreset kAllPresets[] = {PackPreset::fast, PackPreset::standard, PackPreset::best};
 
 using test::packed;
 
@@ -52,7 +52,7 @@ TEST(Presets, AStripIsNoHigherThanWithFast) {
   const std::vector<Extent> items{{3, 9}, {2, 3}, {1, 3}, {1, 10}, {1, 8}, {1, 10}, {3, 4}};
   PackOptions o;
   o.page = {4, 0};
-  for (const PackPreset preset : kPresets)
+  for (const PackPreset preset : kAllPresets)
     EXPECT_EQ(packed(items, with(preset, o)).pages.at(0).height, 21);
 }
 
@@ -61,7 +61,7 @@ TEST(Presets, AStripThatIsTooLowForAllItemsHoldsSome) {
   const std::vector<Extent> items(3, Extent{1000, 500'000'000});
   PackOptions o;
   o.page = {1000, 0};
-  for (const PackPreset preset : kPresets)
+  for (const PackPreset preset : kAllPresets)
     for (const bool turned : {false, true}) {
       o.allow_rotation = turned;
       const PackResult r = packed(items, with(preset, o));
@@ -151,7 +151,7 @@ TEST(Presets, TheBoundOfOneEnormousFullPageIsOne) {
     items.push_back({width, kSide});
   PackOptions o;
   o.page = {kSide, kSide};
-  for (const PackPreset preset : kPresets) {
+  for (const PackPreset preset : kAllPresets) {
     const PackResult r = packed(items, with(preset, o));
     EXPECT_EQ(r.pages.size(), 1u);
     EXPECT_EQ(r.page_lower_bound, 1u);
@@ -163,7 +163,7 @@ TEST(Presets, TheBoundIsNeverBelowThatOfTheArea) {
   PackOptions o;
   o.page = {8, 8};
   const PinnedRect pinned{0, {0, 0, 4, 4}};
-  for (const PackPreset preset : kPresets)
+  for (const PackPreset preset : kAllPresets)
     for (const bool pin : {false, true}) {
       o.pinned = std::span(&pinned, pin ? 1 : 0);
       EXPECT_EQ(packed(std::vector<Extent>(9, {4, 4}), with(preset, o)).page_lower_bound, 3u);

@@ -1,4 +1,4 @@
-# Run by ctest with SOURCE, BUILD, GENERATOR, CXX and FLAGS set, and the files OPENMESH and GMP.
+# Run by ctest with SOURCE, BUILD, GENERATOR, CXX and FLAGS set, and the files OPENMESH and DRACO.
 cmake_minimum_required(VERSION 3.22)
 set(prefix ${BUILD}/tests/package/prefix)
 file(REMOVE_RECURSE ${prefix} ${BUILD}/tests/package/minimal)
@@ -72,11 +72,11 @@ foreach(name charts.obj layout.svg page.png world.glb)
 endforeach()
 
 # Where libraries have prefixes of their own. A shared libatlas brings them itself.
-file(GLOB_RECURSE archive ${prefix}/*/libatlasgeo.a)
+file(GLOB_RECURSE archive ${prefix}/*/libatlasgeo_uv.a)
 if(archive)
   set(elsewhere ${BUILD}/tests/package/elsewhere)
   file(REMOVE_RECURSE ${elsewhere} ${BUILD}/tests/package/minimal_elsewhere)
-  foreach(library OPENMESH GMP)
+  foreach(library OPENMESH DRACO)
     get_filename_component(folder ${${library}} DIRECTORY)
     get_filename_component(name ${${library}} NAME)
     file(GLOB files ${folder}/${name}*)
@@ -86,7 +86,7 @@ if(archive)
       -B ${BUILD}/tests/package/minimal_elsewhere "-DCMAKE_PREFIX_PATH=${prefix}\\;${elsewhere}"
       -DCMAKE_CXX_COMPILER=${CXX} -DCMAKE_CXX_FLAGS=${FLAGS})
   run(${CMAKE_COMMAND} --build ${BUILD}/tests/package/minimal_elsewhere --target unwrap --verbose)
-  foreach(library OPENMESH GMP)
+  foreach(library OPENMESH DRACO)
     get_filename_component(name ${${library}} NAME)
     if(NOT output MATCHES "tests/package/elsewhere/lib/${name}")
       message(FATAL_ERROR "${name} is not linked where it lies:\n${output}")
@@ -162,7 +162,7 @@ add_library(ZLIB::ZLIB ALIAS my_zlib)
 add_subdirectory(${SOURCE} libatlas)
 ")
 run(${CMAKE_COMMAND} -G ${GENERATOR} -S ${strict} -B ${strict}/build
-    -DCMAKE_CXX_COMPILER=${CXX} -DCMAKE_CXX_FLAGS=${FLAGS} ${disabled})
+    -DCMAKE_CXX_COMPILER=${CXX} -DCMAKE_CXX_FLAGS=${FLAGS} -DLIBATLAS_UNITY=OFF ${disabled})
 file(READ ${strict}/build/compile_commands.json commands)
 # An option that is taken back later is without effect.
 foreach(option fast-math exceptions rtti)
@@ -193,7 +193,7 @@ get_filename_component(folder \${module} DIRECTORY)
 ${wanted}
 find_package(libatlas REQUIRED)
 find_package(libatlas REQUIRED)  # twice, as by two folders of a project
-get_target_property(options libatlas::libatlas INTERFACE_LINK_OPTIONS)
+get_target_property(options libatlas::reading INTERFACE_LINK_OPTIONS)
 message(STATUS \"options <\${options}> folder <\${folder}>\")
 ")
   run(${CMAKE_COMMAND} -G ${GENERATOR} -S ${consumer} -B ${consumer}/build -DCMAKE_PREFIX_PATH=${prefix}
@@ -215,14 +215,14 @@ foreach(part APPS EXAMPLES)
   file(REMOVE_RECURSE ${BUILD}/tests/package/part)
   run(${CMAKE_COMMAND} -G ${GENERATOR} -S ${SOURCE} -B ${BUILD}/tests/package/part
       -DCMAKE_CXX_COMPILER=${CXX} -DCMAKE_CXX_FLAGS=${FLAGS} -DLIBATLAS_BUILD_${part}=OFF ${without_${part}})
-  file(READ ${BUILD}/tests/package/part/libatlas.pc text)
+  file(READ ${BUILD}/tests/package/part/libatlas-reading.pc text)
   if(text MATCHES "rpath")
-    message(FATAL_ERROR "libatlas.pc sets a run path with ${without_${part}}:\n${text}")
+    message(FATAL_ERROR "libatlas-reading.pc sets a run path with ${without_${part}}:\n${text}")
   endif()
 endforeach()
 
 # Uses the package with pkg-config.
-file(GLOB_RECURSE pc ${prefix}/*/libatlas.pc)
+file(GLOB_RECURSE pc ${prefix}/*/libatlas-reading.pc)
 get_filename_component(pc_dir ${pc} DIRECTORY)
 file(READ ${pc} text)
 if(text MATCHES "//" OR (archive AND NOT text MATCHES "-Wl,-rpath,\\\${libdir}"))
@@ -236,6 +236,63 @@ run(${CXX} -std=c++20 ${flags} ${SOURCE}/examples/minimal/unwrap.cpp
 run(${BUILD}/tests/package/unwrap_by_pkg_config)
 if(NOT output MATCHES "2304 triangles")
   message(FATAL_ERROR "unwrap by pkg-config printed: ${output}")
+endif()
+
+# Uses the component uv alone, by find_package and by pkg-config. None of the packages that the others
+# need may be looked for, linked or loaded.
+set(uv ${BUILD}/tests/package/uv)
+file(REMOVE_RECURSE ${uv})
+file(WRITE ${uv}/CMakeLists.txt "
+cmake_minimum_required(VERSION 3.22)
+project(uv LANGUAGES CXX)
+find_package(libatlas REQUIRED COMPONENTS uv)
+add_executable(unwrap ${SOURCE}/examples/minimal/unwrap.cpp)
+target_link_libraries(unwrap PRIVATE libatlas::uv)
+")
+set(others "")
+foreach(package PkgConfig CGAL nlohmann_json meshoptimizer ZLIB fmt GTest benchmark CLI11 embree glfw3)
+  list(APPEND others -DCMAKE_DISABLE_FIND_PACKAGE_${package}=ON)
+endforeach()
+run(${CMAKE_COMMAND} -G ${GENERATOR} -S ${uv} -B ${uv}/build -DCMAKE_PREFIX_PATH=${prefix}
+    -DCMAKE_BUILD_TYPE=Release -DCMAKE_CXX_COMPILER=${CXX} -DCMAKE_CXX_FLAGS=${FLAGS} ${others})
+run(${CMAKE_COMMAND} --build ${uv}/build)
+run(${CMAKE_COMMAND} -E env PKG_CONFIG_PATH=${pc_dir} pkg-config --cflags --libs libatlas-uv)
+separate_arguments(uv_link UNIX_COMMAND "${output}")
+run(${CXX} -std=c++20 ${flags} ${SOURCE}/examples/minimal/unwrap.cpp -o ${uv}/unwrap ${uv_link})
+foreach(program ${uv}/unwrap ${uv}/build/unwrap)
+  run(${program})
+  if(NOT output MATCHES "2304 triangles")
+    message(FATAL_ERROR "${program} printed: ${output}")
+  endif()
+  run(ldd ${program})
+  string(REGEX REPLACE "[^\n]*(linux-vdso|ld-linux[^ ]*|lib(c|m|stdc\\+\\+|gcc_s|tbb|atlasgeo_uv))\\.so[^\n]*\n"
+         "" beyond "${output}")
+  if(NOT beyond STREQUAL "" AND NOT FLAGS MATCHES "-fsanitize")
+    message(FATAL_ERROR "${program} loads more than it needs:\n${beyond}")
+  endif()
+endforeach()
+if(archive AND NOT FLAGS MATCHES "-fsanitize")
+  run(strip ${uv}/unwrap)
+  file(SIZE ${uv}/unwrap bytes)
+  if(bytes GREATER 3000000)
+    message(FATAL_ERROR "a program that unwraps has ${bytes} bytes, more than 3 MB")
+  endif()
+endif()
+# And with add_subdirectory, where only its sources are built.
+file(WRITE ${uv}/CMakeLists.txt "
+cmake_minimum_required(VERSION 3.22)
+project(uv LANGUAGES CXX)
+set(LIBATLAS_COMPONENTS uv)
+add_subdirectory(${SOURCE} libatlas)
+add_executable(unwrap ${SOURCE}/examples/minimal/unwrap.cpp)
+target_link_libraries(unwrap PRIVATE libatlas::uv)
+")
+list(REMOVE_ITEM others -DCMAKE_DISABLE_FIND_PACKAGE_fmt=ON)  # its headers alone
+run(${CMAKE_COMMAND} -G ${GENERATOR} -S ${uv} -B ${uv}/sources -DLIBATLAS_UNITY=OFF
+    -DCMAKE_CXX_COMPILER=${CXX} -DCMAKE_CXX_FLAGS=${FLAGS} ${others})
+file(READ ${uv}/sources/compile_commands.json commands)
+if(NOT commands MATCHES "/unwrap/unwrap\\.cpp" OR commands MATCHES "/(image|scene|bake|exporters)/[a-z_]+\\.cpp")
+  message(FATAL_ERROR "LIBATLAS_COMPONENTS=uv builds the wrong sources: ${uv}/sources/compile_commands.json")
 endif()
 
 # Reads and writes image files. Their module is found where the library was installed.

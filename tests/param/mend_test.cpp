@@ -14,21 +14,23 @@ namespace {
 
 using testing::Disc;
 
-constexpr std::uint32_t kSide = 80;
+constexpr std::uint32_t kPlateSide = 80;
 
 std::uint32_t at(std::uint32_t x, std::uint32_t y) {
-  return y * (kSide + 1) + x;
+  return y * (kPlateSide + 1) + x;
 }
 
 // A flat plate with flat uvs. The vertex (x, y) has moved almost to its neighbour, so that the
 // triangles between both have a twentieth of their width.
 struct SqueezedPlate {
-  Disc disc = testing::make_grid(kSide, kSide, [](double u, double v) { return Vec3d{u, v, 0}; });
+  Disc disc = testing::make_grid(kPlateSide, kPlateSide, [](double u, double v) {
+    return Vec3d{u, v, 0};
+  });
   std::vector<Vec2d> uvs;
 
   SqueezedPlate(std::uint32_t x, std::uint32_t y) {
     uvs = testing::drop_z(disc);
-    uvs[at(x, y)].x += 0.95 / kSide;
+    uvs[at(x, y)].x += 0.95 / kPlateSide;
   }
 };
 
@@ -65,7 +67,7 @@ TEST(Mend, GivesSqueezedTrianglesTheirShape) {
 // Both sides of a bound that nothing reaches: it is for the caller to cut there.
 TEST(Mend, LeavesWhatIsBeyondTheBound) {
   SqueezedPlate plate(40, 40);
-  for (std::uint32_t y = 0; y < kSide; y += 3) plate.uvs[at(40, y)].x += 0.5 / kSide;
+  for (std::uint32_t y = 0; y < kPlateSide; y += 3) plate.uvs[at(40, y)].x += 0.5 / kPlateSide;
   const ParamResult before = judged(plate, {}), after = mended(plate, {});
   ASSERT_FALSE(before.within_bound);
   EXPECT_EQ(after.uvs, before.uvs);
@@ -74,16 +76,16 @@ TEST(Mend, LeavesWhatIsBeyondTheBound) {
 TEST(Mend, SmoothingKeepsTheBorderIfAsked) {
   const SqueezedPlate plate(1, 40);
   const LocalMesh mesh = plate.disc.view();
-  const std::vector<std::uint32_t> triangles{2 * (40 * kSide + 1)};
+  const std::vector<std::uint32_t> triangles{2 * (40 * kPlateSide + 1)};
   for (const bool border_moves : {false, true}) {
     std::vector<Vec2d> uvs = plate.uvs;
     ParamWorkspace workspace;
     param::ArapSolver solver(mesh, {}, workspace.impl());
     solver.smooth(triangles, border_moves, uvs);
-    EXPECT_LT(uvs[at(1, 40)].x, 1.4 / kSide);
+    EXPECT_LT(uvs[at(1, 40)].x, 1.4 / kPlateSide);
     EXPECT_TRUE(check_injectivity(mesh, uvs).injective);
     bool moved = false;
-    for (std::uint32_t y = 0; y <= kSide; ++y) moved |= uvs[at(0, y)] != plate.uvs[at(0, y)];
+    for (std::uint32_t y = 0; y <= kPlateSide; ++y) moved |= uvs[at(0, y)] != plate.uvs[at(0, y)];
     EXPECT_EQ(moved, border_moves);
   }
 }
@@ -107,17 +109,17 @@ TEST(Mend, StaysWithinTheBoundHoweverTight) {
 SqueezedPlate slit_plate() {
   SqueezedPlate plate(39, 70);
   const auto first = static_cast<std::uint32_t>(plate.disc.positions.size());
-  for (std::uint32_t y = 41; y <= kSide; ++y) {
+  for (std::uint32_t y = 41; y <= kPlateSide; ++y) {
     const Vec3d p = plate.disc.positions[at(40, y)];
     plate.disc.positions.push_back(p);
-    plate.uvs.push_back({p.x - 0.01 / kSide, p.y});
+    plate.uvs.push_back({p.x - 0.01 / kPlateSide, p.y});
   }
   for (auto& triangle : plate.disc.triangles) {
     double middle = 0;
     for (const std::uint32_t v : triangle) middle += plate.disc.positions[v].x / 3;
     for (std::uint32_t& v : triangle) {
-      if (middle < 0.5 && v % (kSide + 1) == 40 && v >= at(40, 41) && v < first)
-        v = first + v / (kSide + 1) - 41;
+      if (middle < 0.5 && v % (kPlateSide + 1) == 40 && v >= at(40, 41) && v < first)
+        v = first + v / (kPlateSide + 1) - 41;
     }
   }
   return plate;

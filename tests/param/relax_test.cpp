@@ -15,13 +15,13 @@ namespace {
 
 using testing::Disc;
 
-struct System {
+struct RelaxSystem {
   param::Elements elements;
   param::CornerLists corners;
 };
 
-System system_of(const Disc& d) {
-  System s;
+RelaxSystem system_of(const Disc& d) {
+  RelaxSystem s;
   s.elements.build(d.view(), 0);
   s.corners.build(s.elements, d.positions.size());
   return s;
@@ -45,7 +45,7 @@ TEST(Relax, ManyFlipsFarFromEachOtherAreAllTurned) {
   for (std::uint32_t y = 4; y < n; y += 5) {
     for (std::uint32_t x = 4; x < n; x += 5) uv[y * (n + 1) + x].x += 2.3 / n;
   }
-  const System s = system_of(d);
+  const RelaxSystem s = system_of(d);
   ASSERT_GT(flips(d, uv), 400u);
   param::Relaxer relaxer;
   const param::Relaxer::Outcome out = relaxer.remove_flips(s.elements, s.corners, false, uv);
@@ -66,7 +66,7 @@ TEST(Relax, AFoldedChartIsGivenUp) {
   const std::vector<Vec2d> start = uv;
   const std::size_t before = flips(d, uv);
   ASSERT_GE(before, n * n);
-  const System s = system_of(d);
+  const RelaxSystem s = system_of(d);
   param::Relaxer relaxer;
   const param::Relaxer::Outcome out = relaxer.remove_flips(s.elements, s.corners, false, uv);
   EXPECT_EQ(out.left, flips(d, uv));
@@ -124,7 +124,7 @@ TEST(Relax, TheTailIsLoweredWhereItIs) {
   }
   std::vector<Vec2d> uv = start;
   ASSERT_GT(measure_distortion(d.view(), uv).stretch_999, 1.25);
-  const System s = system_of(d);
+  const RelaxSystem s = system_of(d);
   param::Relaxer relaxer;
   EXPECT_EQ(relaxer.lower_tail(s.elements, s.corners, 1.25, uv), param::Tail::lowered);
   EXPECT_LE(measure_distortion(d.view(), uv).stretch_999, 1.25);
@@ -145,7 +145,7 @@ TEST(Relax, ATailThatIsTheWholeChartIsLeftAlone) {
   const Disc d = testing::make_cap(1.3, 20);
   std::vector<Vec2d> uv = testing::drop_z(d);
   const std::vector<Vec2d> start = uv;
-  const System s = system_of(d);
+  const RelaxSystem s = system_of(d);
   param::Relaxer relaxer;
   EXPECT_EQ(relaxer.lower_tail(s.elements, s.corners, 1.05, uv), param::Tail::wide);
   EXPECT_TRUE(std::equal(uv.begin(), uv.end(), start.begin()));
@@ -157,7 +157,7 @@ TEST(Relax, TheTailBeginsBeyondAThousandthOfTheArea) {
   const std::uint32_t n = 80;
   const double bound = 1.25;
   const Disc d = plate(n);
-  const System s = system_of(d);
+  const RelaxSystem s = system_of(d);
   int within = 0, beyond = 0;
   for (std::uint32_t moved = 0; moved < 6; ++moved) {
     std::vector<Vec2d> uv = testing::drop_z(d);
@@ -177,7 +177,7 @@ TEST(Relax, TheTailBeginsBeyondAThousandthOfTheArea) {
 // An isometry at another scale has no tail.
 TEST(Relax, TheTailIsMeasuredAtTheChartsOwnScale) {
   const Disc d = plate(20);
-  const System s = system_of(d);
+  const RelaxSystem s = system_of(d);
   for (const double scale : {0.5, 0.75, 1.4, 2.0}) {
     std::vector<Vec2d> uv = testing::drop_z(d);
     for (Vec2d& p : uv) p = {scale * p.x, scale * p.y};
@@ -193,7 +193,7 @@ TEST(Relax, AVertexWithinAFixedSquareGoesToTheMiddle) {
   Disc d;
   d.positions = {{0, 0, 0}, {-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0}};
   d.triangles = {{0, 1, 2}, {0, 2, 3}, {0, 3, 4}, {0, 4, 1}};
-  const System s = system_of(d);
+  const RelaxSystem s = system_of(d);
   const std::vector<std::uint32_t> all{0, 1, 2, 3};
   for (const double far : {0.1, 0.5, 0.9, 0.99}) {
     for (const Vec2d at : {Vec2d{far, 0}, {0, far}, {-far, 0}, {0, -far}, {far, 0.7 * far}}) {

@@ -256,6 +256,63 @@ TEST(Export, ChartsOnlyNeedsNoLight) {
   EXPECT_NEAR(s.stretch_l2, m.stretch_l2, 0.01);
 }
 
+// The page becomes as large as the texel's length needs, which the evaluator measures in the file.
+TEST(Export, PlainUvsOfAGivenDensity) {
+  const TempFolder folder;
+  LoadedScene scene = lit_scene(box(8, {2, 2, 2}));
+  ExportOptions options = small_pages(folder);
+  options.charts_only = true;
+  const auto texels_a_unit = [&](const ExportReport& report) {
+    EXPECT_EQ(report.pages.size(), 1u);
+    return measure_atlas(*read_uv_obj(options.target), report.pages[0].width,
+                         report.pages[0].height)
+        .scale;
+  };
+  for (const bool square : {false, true}) {
+    options.square_plain_page = square;
+    for (const double texel : {0.05, 0.01, 0.002}) {
+      options.texel_metres = texel;
+      const auto report = export_world(scene, options, {}, {});
+      ASSERT_TRUE(report.ok()) << report.status().message();
+      EXPECT_NEAR(texels_a_unit(*report) * texel, 1, 0.01) << square << ' ' << texel;
+      // A square page has sides of a power of two, so up to three quarters of it stay empty.
+      EXPECT_GT(report->uv_utilization, square ? 0.15 : 0.5) << texel;
+      EXPECT_EQ(report->texel, texel);
+    }
+  }
+  scene.scene.metres_per_unit = 0.01;  // the same length is a hundred times as many units
+  options.texel_metres = 0.0001;
+  const auto small = export_world(scene, options, {}, {});
+  ASSERT_TRUE(small.ok()) << small.status().message();
+  EXPECT_NEAR(texels_a_unit(*small), 100, 1);
+}
+
+// What one page does not hold is refused, and several pages may hold it.
+TEST(Export, PlainUvsOfADensityThatDoesNotFit) {
+  const TempFolder folder;
+  const LoadedScene scene = lit_scene(box(8, {2, 2, 2}));
+  ExportOptions options = small_pages(folder);
+  options.charts_only = true;
+  options.larger_plain_page = false;
+  options.texel_metres = 0.01;
+  const auto refused = export_world(scene, options, {}, {});
+  EXPECT_EQ(refused.status().code(), ErrorCode::no_solution);
+  EXPECT_NE(refused.status().message().find("ExportOptions::texel_metres: 0.01 m needs more room"),
+            std::string::npos)
+      << refused.status().message();
+  EXPECT_FALSE(fs::exists(options.target));
+  options.plain_pages = 16;
+  for (const bool udim : {false, true}) {
+    options.udim = udim;
+    const auto several = export_world(scene, options, {}, {});
+    ASSERT_TRUE(several.ok()) << several.status().message();
+    EXPECT_GT(several->pages.size(), 3u);
+    EXPECT_LT(several->pages.size(), 16u);
+  }
+  options.texel_metres = 100;
+  EXPECT_EQ(export_world(scene, options, {}, {}).status().code(), ErrorCode::bad_option);
+}
+
 TEST(Export, PlainUvsOnSeveralPages) {
   const TempFolder folder;
   ExportOptions options = small_pages(folder);
@@ -316,9 +373,9 @@ TEST(Export, CancelledInAnyStageWritesNothing) {
 
 // The ranges of its own options are those of export_options_test.cpp.
 TEST(Export, RefusesOptionsOutOfRangeBeforeItWrites) {
-  using Change = std::function<void(ExportOptions&)>;
+  using OptionChange = std::function<void(ExportOptions&)>;
   const auto nan = std::numeric_limits<double>::quiet_NaN();
-  const std::vector<std::pair<const char*, Change>> changes{
+  const std::vector<std::pair<const char*, OptionChange>> changes{
       {"ExportOptions::atlases", [](ExportOptions& o) { o.atlases = 0; }},
       {"ChartOptions::cone_degrees", [=](ExportOptions& o) { o.charts.cone_degrees = nan; }},
       {"ChartOptions::max_stretch", [](ExportOptions& o) { o.charts.max_stretch = 1; }},

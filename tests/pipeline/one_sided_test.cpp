@@ -21,7 +21,7 @@ namespace {
 struct Corner {
   double x, y, z, u, v;
 };
-struct Written {
+struct WrittenTriangle {
   std::array<Corner, 3> corners;
   bool double_sided;
   std::string image;
@@ -45,7 +45,8 @@ class Exported {
       const nlohmann::json& material = file.document["materials"][std::size_t(t.material)];
       const std::size_t texture = material["pbrMetallicRoughness"]["baseColorTexture"]["index"];
       const std::size_t image = file.document["textures"][texture]["source"];
-      Written w{{}, material.value("doubleSided", false), file.document["images"][image]["uri"]};
+      WrittenTriangle w{
+          {}, material.value("doubleSided", false), file.document["images"][image]["uri"]};
       for (std::size_t k = 0; k < 3; ++k)
         w.corners[k] = {p[3 * k], p[3 * k + 1], p[3 * k + 2], uv[2 * k], uv[2 * k + 1]};
       triangles_.push_back(w);
@@ -59,7 +60,7 @@ class Exported {
 
   std::size_t one_sided() const {
     return std::size_t(std::count_if(triangles_.begin(), triangles_.end(),
-                                     [](const Written& t) { return !t.double_sided; }));
+                                     [](const WrittenTriangle& t) { return !t.double_sided; }));
   }
   std::size_t count() const { return triangles_.size(); }
 
@@ -67,7 +68,7 @@ class Exported {
   // that are not culled.
   std::vector<int> seen(double x, double y, bool from_above) const {
     std::vector<int> values;
-    for (const Written& t : triangles_) {
+    for (const WrittenTriangle& t : triangles_) {
       const auto& [a, b, c] = t.corners;
       const double area = (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
       if (!t.double_sided && (area > 0) != from_above) continue;
@@ -84,7 +85,7 @@ class Exported {
 
  private:
   TempFolder folder_;
-  std::vector<Written> triangles_;
+  std::vector<WrittenTriangle> triangles_;
   std::map<std::string, Image8> images_;
 };
 

@@ -77,7 +77,7 @@ TEST(ReadAgain, ThePageOfAKeptScenesNewUvsIsThatOfTheirSet) {
   EXPECT_EQ(read_scene(options.target, {}, {})->uv_aspect, shape_of_page);
 }
 
-ExportReport exported(const LoadedScene& scene, const ExportOptions& options) {
+ExportReport must_export(const LoadedScene& scene, const ExportOptions& options) {
   auto report = export_world(scene, options, {}, {});
   EXPECT_TRUE(report.ok()) << report.status().message();
   return report.ok() ? std::move(*report) : ExportReport{};
@@ -87,7 +87,7 @@ ExportReport exported(const LoadedScene& scene, const ExportOptions& options) {
 std::pair<ExportReport, ExportReport> baked_and_kept(const LoadedScene& scene,
                                                      ExportOptions options,
                                                      std::vector<double>* aspects) {
-  ExportReport baked = exported(scene, options);
+  ExportReport baked = must_export(scene, options);
   const auto again = read_scene(options.target, {}, {});
   EXPECT_TRUE(again.ok()) << again.status().message();
   options.charts_only = options.charts.keep_uv_charts = true;
@@ -95,7 +95,7 @@ std::pair<ExportReport, ExportReport> baked_and_kept(const LoadedScene& scene,
   options.charts.material_uv_aspects = again->material_uv_aspects;
   if (aspects) *aspects = again->material_uv_aspects;
   options.target.replace_filename("kept.obj");
-  return {std::move(baked), exported(*again, options)};
+  return {std::move(baked), must_export(*again, options)};
 }
 
 // Baked worlds say the shape of their pages, too.

@@ -103,17 +103,17 @@ TEST(ThinReport, AnExportTellsOfChartsThatRoundingStretches) {
 // A sheet of rows with a sliver on each, which rounding to 1/256 of a texel turns over here and
 // there. Wherever the sheet is moved to, some of them cover the centre of a texel.
 TEST(ThinReport, AnExportTellsOfTexelsDrawnTwice) {
-  constexpr std::uint32_t kRows = 40;
+  constexpr std::uint32_t kSlantedRows = 40;
   std::mt19937 random(5);
-  std::uniform_real_distribution<double> slant(0, 0.5 / kRows);
+  std::uniform_real_distribution<double> slant(0, 0.5 / kSlantedRows);
   LoadedScene loaded;
-  for (std::uint32_t row = 0; row <= kRows; ++row) {
-    const double left = (row + 0.1) / kRows, right = left + slant(random);
+  for (std::uint32_t row = 0; row <= kSlantedRows; ++row) {
+    const double left = (row + 0.1) / kSlantedRows, right = left + slant(random);
     for (const Vec2d p : {Vec2d{0, left}, {0.5, (left + right) / 2 + 3e-7}, {1, right}})
       loaded.scene.positions.push_back({float(p.x), float(p.y), 0});
     const std::uint32_t a = 3 * row, b = a + 1, c = a + 2, d = a + 3, e = a + 5;
     loaded.scene.indices.insert(loaded.scene.indices.end(), {a, c, b});
-    if (row == kRows) continue;
+    if (row == kSlantedRows) continue;
     loaded.scene.indices.insert(loaded.scene.indices.end(), {a, b, d, b, c, e, b, e, d});
   }
   ASSERT_TRUE(complete_scene(loaded.scene).ok());

@@ -189,6 +189,7 @@ TEST(ReportJson, FiguresOfLightAreInTheirPlaces) {
                       {"/light/median", &light.median},
                       {"/light/middle", &light.middle},
                       {"/light/percentile98", &light.percentile98},
+                      {"/light/percentile99", &light.percentile99},
                       {"/light/seam_length", &r.light_seam_length},
                       {"/light/maximum", &light.maximum},
                       {"/light/mean", &light.mean},

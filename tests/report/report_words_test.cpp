@@ -55,6 +55,27 @@ TEST(ReportWords, NamesOfFilesAndPagesAreThoseWritten) {
   EXPECT_EQ(file["advice"], json({"first", "second"}));
 }
 
+TEST(ReportWords, TheCommandIsThatOfTheProgram) {
+  const ExportReport r = complete_report();
+  const json file = written(r, {"atlas-export a.obj", {{"--mips", "2"}, {"--quiet", "true"}}});
+  EXPECT_FALSE(file["version"].get<std::string>().empty());
+  EXPECT_EQ(file["command"], "atlas-export a.obj");
+  EXPECT_EQ(file["options"], json::parse(R"({"--mips": "2", "--quiet": "true"})"));
+  for (const char* key : {"command", "options"})
+    EXPECT_FALSE(written(r, {}).contains(key)) << "the library was called";
+}
+
+TEST(ReportWords, RowsOfChartsComeOnRequest) {
+  const test::TempFolder folder;
+  ExportReport r = complete_report();
+  r.charts.resize(3);
+  EXPECT_EQ(written(r)["charts"]["charts"].size(), 3u);
+  ASSERT_TRUE(write_json(r, folder / "short.json").ok());
+  const json file = json::parse(test::TempFolder::read(folder / "short.json"));
+  EXPECT_EQ(file["charts"]["count"], 3);
+  EXPECT_FALSE(file["charts"].contains("charts"));
+}
+
 void add_keys(const json& value, std::set<std::string>& keys) {
   if (value.is_object())
     for (const auto& [key, member] : value.items()) {

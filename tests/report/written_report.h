@@ -10,9 +10,10 @@
 
 namespace atlas::test {
 
-inline nlohmann::json written(const ExportReport& report) {
+inline nlohmann::json written(const ExportReport& report,
+                              const ReportRequest& request = {"atlas-export", {}, true}) {
   const TempFolder folder;
-  EXPECT_TRUE(write_json(report, folder / "report.json").ok());
+  EXPECT_TRUE(write_json(report, folder / "report.json", request).ok());
   return nlohmann::json::parse(TempFolder::read(folder / "report.json"));
 }
 

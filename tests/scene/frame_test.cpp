@@ -21,21 +21,21 @@ namespace {
 
 using test::TempFolder;
 
-constexpr int kSide = 21;
+constexpr int kFrameSide = 21;
 constexpr double kStep = 0.25;
 
 // Returns an OBJ of a bent sheet near the point, with `rest` behind its vertices and faces.
 std::string sheet(const Vec3d& at, const std::string& rest) {
   std::string text;
-  for (int y = 0; y < kSide; ++y)
-    for (int x = 0; x < kSide; ++x)
+  for (int y = 0; y < kFrameSide; ++y)
+    for (int x = 0; x < kFrameSide; ++x)
       text +=
           fmt::format("v {} {} {}\n", at.x + kStep * x, at.y + kStep * y, at.z + std::sin(0.3 * y));
-  for (int y = 0; y + 1 < kSide; ++y) {
-    for (int x = 0; x + 1 < kSide; ++x) {
-      const int v = 1 + y * kSide + x;
-      text += fmt::format("f {} {} {}\nf {} {} {}\n", v, v + 1, v + kSide, v + 1, v + kSide + 1,
-                          v + kSide);
+  for (int y = 0; y + 1 < kFrameSide; ++y) {
+    for (int x = 0; x + 1 < kFrameSide; ++x) {
+      const int v = 1 + y * kFrameSide + x;
+      text += fmt::format("f {} {} {}\nf {} {} {}\n", v, v + 1, v + kFrameSide, v + 1,
+                          v + kFrameSide + 1, v + kFrameSide);
     }
   }
   return text + rest;
@@ -50,10 +50,10 @@ LoadedScene load(const TempFolder& folder, const std::string& text) {
 // Expects the sheet's grid to be exact.
 void expect_exact(const LoadedScene& loaded, const Vec3d& at) {
   const Vec3d& origin = loaded.scene.origin;
-  for (int i = 0; i < kSide * kSide; ++i) {
+  for (int i = 0; i < kFrameSide * kFrameSide; ++i) {
     const Vec3f& p = loaded.scene.positions[i];
-    ASSERT_EQ(origin.x + p.x, at.x + kStep * (i % kSide)) << i;
-    ASSERT_EQ(origin.y + p.y, at.y + kStep * (i / kSide)) << i;
+    ASSERT_EQ(origin.x + p.x, at.x + kStep * (i % kFrameSide)) << i;
+    ASSERT_EQ(origin.y + p.y, at.y + kStep * (i / kFrameSide)) << i;
   }
 }
 
@@ -175,7 +175,7 @@ TEST(Frame, WhatRoundingLosesIsADefect) {
   const TempFolder folder;
   const std::string second = sheet({1e9 + 0.125, 0, 0}, "");
   std::string relative;
-  const int count = kSide * kSide;
+  const int count = kFrameSide * kFrameSide;
   for (std::size_t begin = 0; begin < second.size();) {
     const std::size_t end = second.find('\n', begin) + 1;
     std::string line = second.substr(begin, end - begin);

@@ -7,9 +7,11 @@
 #include <functional>
 #include <set>
 
+#include "libatlas/core/clock.h"
 #include "libatlas/scene/reader.h"
 #include "tests/support/draco_gltf.h"
 #include "tests/support/packed_gltf.h"
+#include "tests/support/slowness.h"
 #include "tests/support/temp_folder.h"
 
 namespace atlas {
@@ -177,17 +179,17 @@ TEST(GltfDraco, PrimitivesMayShareAccessors) {
 // The same data may be decoded several times, but not without a limit.
 TEST(GltfDraco, TheSumOfDecodedDataIsLimited) {
   const TempFolder folder;
-  constexpr std::uint32_t kSide = 100;
+  constexpr std::uint32_t kGridSide = 100;
   std::vector<float> positions;
   DracoSource source;
   source.sequential = false;
   source.bits = 8;
-  source.points = kSide * kSide;
+  source.points = kGridSide * kGridSide;
   for (std::uint32_t p = 0; p < source.points; ++p) {
-    const std::uint32_t x = p % kSide, y = p / kSide;
+    const std::uint32_t x = p % kGridSide, y = p / kGridSide;
     positions.insert(positions.end(), {float(x), float(y), 0});
-    if (x + 1 < kSide && y + 1 < kSide)
-      for (const std::uint32_t corner : {0u, 1u, kSide, kSide, 1u, kSide + 1})
+    if (x + 1 < kGridSide && y + 1 < kGridSide)
+      for (const std::uint32_t corner : {0u, 1u, kGridSide, kGridSide, 1u, kGridSide + 1})
         source.indices.push_back(p + corner);
   }
   source.attributes = {{kPosition, 3, draco::DT_FLOAT32, positions.data()}};
@@ -213,6 +215,60 @@ TEST(GltfDraco, TheSumOfDecodedDataIsLimited) {
       EXPECT_NE(loaded.status().message().find("decodes to more than"), std::string::npos);
     }
   }
+}
+
+// Draco takes the number of bits that tell how uvs are predicted from the data, and decodes up to
+// 2^31 of them: for eight seconds, in a file of a few hundred bytes.
+TEST(GltfDraco, CountsWithinTheDataAreNotBelieved) {
+  const TempFolder folder;
+  const Grid grid;
+  DracoSource source = grid_source(grid);
+  std::vector<float> uvs;
+  for (std::size_t p = 0; p < source.points; ++p)
+    uvs.insert(uvs.end(), {grid.positions[3 * p], grid.positions[3 * p + 1]});
+  source.attributes.push_back(
+      {draco::GeometryAttribute::TEX_COORD, 2, draco::DT_FLOAT32, uvs.data()});
+  source.sequential = false;
+  source.bits = 12;
+  source.speed = 0;
+  DracoGltf g;
+  g.single(g.primitive(source, {{"POSITION", g.promised(source.points, "VEC3")},
+                                {"TEXCOORD_0", g.promised(source.points, "VEC2")}}));
+  ASSERT_TRUE(load_glb(folder, g).ok()) << load_glb(folder, g).status().message();
+  const std::string whole = g.bytes;
+  double longest = 0;
+  for (std::size_t at = 0; at + 4 <= whole.size(); ++at) {
+    g.bytes = whole;
+    g.bytes.replace(at, 4, "\xff\xff\xff\x7f");
+    const double begun = cpu_seconds();
+    static_cast<void>(load_glb(folder, g));
+    longest = std::max(longest, cpu_seconds() - begun);
+  }
+  EXPECT_LT(longest, 0.2 * test::kSlowness);
+}
+
+// Data that announce far more than their accessors are refused before they are decoded.
+TEST(GltfDraco, CountsAreHeldAgainstTheAccessors) {
+  const TempFolder folder;
+  constexpr std::uint32_t kSide = 150;
+  std::vector<float> positions;
+  DracoSource source;
+  source.sequential = false;
+  source.points = kSide * kSide;
+  for (std::uint32_t p = 0; p < source.points; ++p) {
+    const std::uint32_t x = p % kSide, y = p / kSide;
+    positions.insert(positions.end(), {float(x), float(y), 0});
+    if (x + 1 < kSide && y + 1 < kSide)
+      for (const std::uint32_t corner : {0u, 1u, kSide, kSide, 1u, kSide + 1})
+        source.indices.push_back(p + corner);
+  }
+  source.attributes = {{kPosition, 3, draco::DT_FLOAT32, positions.data()}};
+  DracoGltf g = grid_gltf(source);
+  ASSERT_TRUE(load_glb(folder, g).ok());
+  for (json& accessor : g.j["accessors"]) accessor["count"] = 300;
+  const auto refused = load_glb(folder, g);
+  EXPECT_NE(refused.status().message().find("but its accessors 300"), std::string::npos)
+      << refused.status().message();
 }
 
 // The compressed copy, which is damaged here, is not needed.

@@ -418,5 +418,27 @@ TEST(Gltf, ContainersThatManyWrite) {
   EXPECT_EQ(load(false, word(4) + "KINDdata", g.bytes), 1u);
 }
 
+// A chain is a tree. That it is not read is a limit of the reader, and said to be one.
+TEST(Gltf, DeepChainsOfNodesAreToldAsDeep) {
+  const TempFolder folder;
+  const auto message = [&](int nodes, int last_child) {
+    Gltf g;
+    g.single({{"attributes", {{"POSITION", g.floats({0, 0, 0, 1, 0, 0, 0, 1, 0}, "VEC3", 3)}}}});
+    json chain = json::array();
+    for (int i = 0; i < nodes; ++i) chain.push_back({{"children", {i + 1}}});
+    chain.push_back({{"mesh", 0}});
+    if (last_child >= 0) chain.back()["children"] = {last_child};
+    g.j["nodes"] = chain;
+    const auto loaded = load_glb(folder, g);
+    return loaded.ok() ? std::string() : loaded.status().message();
+  };
+  EXPECT_EQ(message(500, -1), "");
+  for (const int nodes : {600, 100000})
+    EXPECT_NE(message(nodes, -1).find("node 513: is nested too deeply, below more than 512 nodes"),
+              std::string::npos)
+        << message(nodes, -1);
+  EXPECT_NE(message(3, 1).find("the nodes form no tree"), std::string::npos) << message(3, 1);
+}
+
 }  // namespace
 }  // namespace atlas

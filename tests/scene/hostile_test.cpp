@@ -13,7 +13,7 @@ namespace {
 
 using test::TempFolder;
 
-struct Case {
+struct HostileCase {
   const char* file;
   std::string bytes;
   ErrorCode code;
@@ -28,7 +28,7 @@ const std::string kStl =
     "solid\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\n"
     "endloop endfacet\n";
 
-const Case kCases[] = {
+const HostileCase kCases[] = {
     {"empty.obj", "", ErrorCode::bad_input, "empty.obj: is empty"},
     {"no_faces.obj", "v 0 0 0\n", ErrorCode::bad_input, "holds no face"},
     {"all_bad.obj", "v 0 0 0\nf 1 2 3\n", ErrorCode::bad_input, "all 1 faces are unusable"},
@@ -231,17 +231,17 @@ const Case kCases[] = {
     {"empty.wrl", "", ErrorCode::bad_input, "empty.wrl: is empty"},
     {"empty.wrz", "", ErrorCode::bad_input, "empty.wrz: is empty"},
     {"proto.wrl", "#VRML V2.0 utf8\nPROTO A [ ] { Group { } }\n", ErrorCode::bad_input,
-     "PROTO is not supported"},
+     "PROTO is not supported, and it declares A"},
     {"route.wrl", "#VRML V2.0 utf8\nROUTE a.b c.d\n", ErrorCode::bad_input, "'TO' expected"},
     {"lines.wrl", "#VRML V2.0 utf8\nGroup { \"two\nlines\" }\n", ErrorCode::bad_input,
      "'\"two' where a field should be"},
     {"scene.xyz", "1 2 3\n", ErrorCode::unsupported, "no reader"},
 };
 
-class Hostile : public ::testing::TestWithParam<Case> {};
+class Hostile : public ::testing::TestWithParam<HostileCase> {};
 
 TEST_P(Hostile, EndsInOneClearLine) {
-  const Case& c = GetParam();
+  const HostileCase& c = GetParam();
   const TempFolder folder;
   folder.write("mtl.obj.mtl", "newmtl a\nKd red\n");
   folder.write("option.obj.mtl", "newmtl a\nmap_Kd -o a.png\n");

@@ -57,6 +57,22 @@ TEST(Illumination, FromASecondFile) {
             ErrorCode::unsupported);
 }
 
+// Light of another file is given vertex by vertex, so it takes the place of colours of faces, and
+// those of its own faces are none.
+TEST(Illumination, IsThatOfVerticesNotOfFaces) {
+  const TempFolder folder;
+  const auto faces = folder.write(
+      "a.off", "OFF\n4 2 0\n0 0 0\n2 0 0\n2 3 0\n0 3 0\n3 0 1 2 1 0 0\n3 0 2 3 0 1 0\n");
+  ReadOptions options;
+  options.illumination_file = folder.write("light.txt", "1\n2\n3\n4\n");
+  const LoadedScene loaded = load(faces, options);
+  EXPECT_EQ(loaded.scene.positions.size(), 4u);
+  EXPECT_EQ(loaded.scene.illumination.at(3), (Vec3f{4, 4, 4}));
+  options.illumination_file = faces;
+  const std::string message = read_scene(faces, options, {}).status().message();
+  EXPECT_NE(message.find("its colours are those of faces"), std::string::npos) << message;
+}
+
 TEST(Illumination, FilesThatTheSecondFileNamesAreListed) {
   const TempFolder folder;
   const auto mesh = folder.write("mesh.obj", "mtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");

@@ -13,13 +13,13 @@ namespace {
 
 using test::TempFolder;
 
-Result<LoadedScene> load(const std::string& bytes) {
+Result<LoadedScene> load_off(const std::string& bytes) {
   const TempFolder folder;
   return read_scene(folder.write("a.off", bytes), {}, {});
 }
 
 Scene scene_of(const std::string& bytes) {
-  auto loaded = load(bytes);
+  auto loaded = load_off(bytes);
   EXPECT_TRUE(loaded.ok()) << loaded.status().message();
   return loaded.ok() ? std::move(loaded->scene) : Scene{};
 }
@@ -63,6 +63,77 @@ TEST(Off, NormalsColoursAndTexcoordsInThisOrder) {
   EXPECT_TRUE(bare.normals.empty()) << "they are not asked for";
 }
 
+const std::string kTwoFaces = "OFF\n4 2 0\n" + kCorners;
+
+std::vector<Vec3f> corner_light(const Scene& scene) {
+  std::vector<Vec3f> result;
+  for (const std::uint32_t v : scene.indices)
+    if (scene.lit()) result.push_back(scene.illumination[v]);
+  return result;
+}
+
+// Colours of faces follow the scale of those of vertices, and are those of all their corners.
+TEST(Off, ColoursOfFaces) {
+  const auto light = [](const char* a, const char* b) {
+    return corner_light(scene_of(kTwoFaces + "3 0 1 2 " + a + "\n3 0 2 3 " + b + "\n"));
+  };
+  const auto both = [](Vec3f a, Vec3f b) { return std::vector<Vec3f>{a, a, a, b, b, b}; };
+  EXPECT_EQ(light("51 0 255", "1 1 1"), both({0.2f, 0, 1}, {1 / 255.f, 1 / 255.f, 1 / 255.f}));
+  EXPECT_EQ(light("51 0 255 255 # red", "0 0 0 255"), both({0.2f, 0, 1}, {0, 0, 0}));
+  EXPECT_EQ(light("0.5 0 1", "1 1 1"), both({0.5f, 0, 1}, {1, 1, 1}));
+  EXPECT_EQ(light("1 0 0", "0 0 1"), both({1, 0, 0}, {0, 0, 1}));
+  EXPECT_EQ(light("1 0 0 0.5", "0 3 1 1"), both({1 / 255.f, 0, 0}, {0, 3 / 255.f, 1 / 255.f}));
+  EXPECT_EQ(light("", ""), std::vector<Vec3f>{});
+  // Indices into a map of colours are in no file.
+  EXPECT_EQ(light("7", "3"), std::vector<Vec3f>{});
+}
+
+TEST(Off, FacesShareVerticesWhereTheirColoursAgree) {
+  EXPECT_EQ(scene_of(kTwoFaces + "3 0 1 2 9 8 7\n3 0 2 3 9 8 7\n").positions.size(), 4u);
+  const Scene scene = scene_of(kTwoFaces + "3 0 1 2 9 8 7\n3 0 2 3 9 8 6\n");
+  EXPECT_EQ(scene.positions.size(), 6u);
+  for (std::size_t k = 0; k < 6; ++k) {
+    const Vec3f p = scene.positions[scene.indices[k]];
+    const Vec3f corners[] = {{0, 0, 0}, {2, 0, 0}, {2, 3, 0}, {0, 0, 0}, {2, 3, 0}, {0, 3, 0}};
+    EXPECT_EQ(p, corners[k]);
+  }
+}
+
+TEST(Off, FacesWithoutAColourAreDark) {
+  const auto loaded = load(kTwoFaces + "3 0 1 2\n3 0 2 3 255 0 0\n");
+  ASSERT_TRUE(loaded.ok()) << loaded.status().message();
+  const Vec3f red{1, 0, 0};
+  EXPECT_EQ(corner_light(loaded->scene), (std::vector<Vec3f>{{}, {}, {}, red, red, red}));
+  EXPECT_EQ(loaded->defects.count(DefectKind::illumination_missing), 3u);
+}
+
+// Colours of vertices say more, and those of faces are told to be ignored.
+TEST(Off, ColoursOfVerticesComeFirst) {
+  const auto loaded =
+      load("COFF\n3 1 0\n0 0 0 255 0 0\n1 0 0 0 0 0\n0 1 0 0 0 0\n3 0 1 2 0 255 0\n");
+  ASSERT_TRUE(loaded.ok()) << loaded.status().message();
+  EXPECT_EQ(loaded->scene.illumination[0], (Vec3f{1, 0, 0}));
+  ASSERT_EQ(loaded->defects.count(DefectKind::element_ignored), 1u);
+  EXPECT_NE(loaded->defects.lines()[0].find("colours of faces"), std::string::npos);
+}
+
+TEST(Off, IndicesBeyondTheVerticesReachNoCopies) {
+  const auto loaded = load(kTwoFaces + "3 0 1 2 9 8 7\n3 0 2 4 9 8 6\n");
+  ASSERT_TRUE(loaded.ok()) << loaded.status().message();
+  EXPECT_EQ(loaded->scene.triangle_count(), 1u);
+}
+
+TEST(Off, AlphaOfFacesIsKept) {
+  const TempFolder folder;
+  const auto path = folder.write("a.off", kTwoFaces + "3 0 1 2 255 0 0 51\n3 0 2 3 255 0 0\n");
+  const auto loaded = read_scene(path, {.rest = true}, {});
+  ASSERT_TRUE(loaded.ok()) << loaded.status().message();
+  const Scene& scene = loaded->scene;
+  ASSERT_EQ(scene.vertex_opacity.size(), 6u);
+  for (std::size_t k = 0; k < 6; ++k)
+    EXPECT_EQ(scene.vertex_opacity[scene.indices[k]], k < 3 ? 0.2f : 1);
+}
+
 // Every element is as short as the format allows.
 TEST(Off, ShortElementsAreNotTakenForACutFile) {
   std::string vertices, faces;
@@ -94,8 +165,8 @@ TEST(Off, VerticesHaveAllTheirNumbers) {
   const auto taken = [](const std::string& header, int numbers) {
     std::string vertex;
     for (int i = 0; i < numbers; ++i) vertex += "1 ";
-    const auto loaded = load(header + "\n3 1 0\n" + vertex + "\n" + vertex + "\n" + vertex +
-                             "\n3 0 1 2\n# " + std::string(40, '-') + "\n");
+    const auto loaded = load_off(header + "\n3 1 0\n" + vertex + "\n" + vertex + "\n" + vertex +
+                                 "\n3 0 1 2\n# " + std::string(40, '-') + "\n");
     if (!loaded.ok()) {
       EXPECT_NE(loaded.status().message().find("it has " + std::to_string(numbers)),
                 std::string::npos)
@@ -114,7 +185,7 @@ TEST(Off, VerticesHaveAllTheirNumbers) {
 }
 
 TEST(Off, DefectsAreCounted) {
-  const auto loaded = load(
+  const auto loaded = load_off(
       "OFF\n4 5 0\n0 0 0 9 9\n2 0 0\nnan 3 0\n0 3 0\n3 0 1 3\n3 0 1 2\n3 0 1 4\n3 0 1 -1\n2 0 1\n"
       "3 0 1 3\n");
   ASSERT_TRUE(loaded.ok()) << loaded.status().message();
@@ -175,11 +246,15 @@ TEST_P(BinaryOff, IsRead) {
     square(colours);
     const Scene scene = scene_of(bytes_);
     EXPECT_EQ(scene.triangle_count(), 3u);
-    ASSERT_EQ(scene.positions.size(), 4u);
+    ASSERT_GE(scene.positions.size(), 4u);
     EXPECT_EQ(scene.positions[3], (Vec3f{3, 9, 1}));
-    ASSERT_EQ(scene.lit(), colours);
+    // Only Geomview's form has colours of faces.
+    ASSERT_EQ(scene.lit(), colours || GetParam());
     if (colours) {
       EXPECT_EQ(scene.illumination[2], (Vec3f{200, .5f, -1}));
+    } else if (GetParam()) {
+      for (std::size_t k = 0; k < 9; ++k)
+        EXPECT_EQ(scene.illumination[scene.indices[k]].y, k < 3 ? 0 : 0.5f);
     }
   }
 }
@@ -218,7 +293,7 @@ TEST_P(BinaryOff, DefectsAreNamedByTheirNumbers) {
   face(3);
   face(4);
   face(1);
-  const auto loaded = load(bytes_);
+  const auto loaded = load_off(bytes_);
   ASSERT_TRUE(loaded.ok()) << loaded.status().message();
   EXPECT_EQ(loaded->scene.triangle_count(), 1u);
   const std::vector<std::string> lines = loaded->defects.lines();
@@ -238,7 +313,7 @@ TEST_P(BinaryOff, FacesOfTwoCornersNeedCountedColours) {
   if (GetParam()) word(0);
   for (const std::uint32_t v : {2u, 0u, 1u}) word(v);
   if (GetParam()) word(0);
-  const auto loaded = load(bytes_);
+  const auto loaded = load_off(bytes_);
   ASSERT_EQ(loaded.ok(), GetParam());
   if (GetParam()) {
     EXPECT_EQ(loaded->defects.count(DefectKind::too_few_corners), 1u);
@@ -250,14 +325,14 @@ TEST_P(BinaryOff, BytesAfterTheLastFaceAreRefused) {
   square(false);
   for (int more = 1; more < 9; ++more) {
     bytes_ += 'x';
-    EXPECT_EQ(load(bytes_).status().code(), ErrorCode::bad_input) << more;
+    EXPECT_EQ(load_off(bytes_).status().code(), ErrorCode::bad_input) << more;
   }
 }
 
 TEST_P(BinaryOff, EveryTruncationIsNoticed) {
   square(true);
   for (std::size_t length = 0; length < bytes_.size(); ++length) {
-    const auto loaded = load(bytes_.substr(0, length));
+    const auto loaded = load_off(bytes_.substr(0, length));
     ASSERT_FALSE(loaded.ok()) << length;
     EXPECT_EQ(loaded.status().code(), ErrorCode::bad_input);
   }
@@ -269,7 +344,7 @@ INSTANTIATE_TEST_SUITE_P(Both, BinaryOff, ::testing::Bool(),
 TEST(Off, EveryTruncationIsNoticed) {
   const std::string bytes = "COFF\n3 1 0\n0 0 0 1 2 3\n1 0 0 1 2 3\n0 1 0 1 2 3\n3 0 1 2\n";
   for (std::size_t length = 0; length + 1 < bytes.size(); ++length) {
-    const auto loaded = load(bytes.substr(0, length));
+    const auto loaded = load_off(bytes.substr(0, length));
     ASSERT_FALSE(loaded.ok()) << length;
     EXPECT_NE(loaded.status().message().find("a.off"), std::string::npos);
   }
@@ -286,7 +361,7 @@ TEST(Off, RandomDamageNeverCrashes) {
     for (int hits = 1 + int(random() % 3); hits > 0; --hits) {
       bytes[random() % bytes.size()] = round % 2 ? char(random()) : char('0' + random() % 10);
     }
-    const auto loaded = load(bytes);
+    const auto loaded = load_off(bytes);
     if (!loaded.ok()) continue;
     ++survived;
     ASSERT_TRUE(test::sound(loaded->scene));

@@ -90,6 +90,99 @@ TEST(Ply, ColoursOfScansAreDecoded) {
 }
 
 // MeshLab writes textures like this: a comment for each, and a number in each face.
+// A square of two triangles, whose faces have more properties.
+std::string square_of_faces(const std::string& properties, const std::string& first,
+                            const std::string& second) {
+  return "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\n"
+         "property float z\nelement face 2\nproperty list uchar int vertex_indices\n" +
+         properties + "end_header\n0 0 0\n2 0 0\n2 3 0\n0 3 0\n3 0 1 2 " + first + "\n3 0 2 3 " +
+         second + "\n";
+}
+
+std::string properties_of(const std::string& type, const std::vector<const char*>& names) {
+  std::string lines;
+  for (const char* name : names) lines += fmt::format("property {} {}\n", type, name);
+  return lines;
+}
+
+TEST(Ply, ColoursOfFacesAreThoseOfTheirCorners) {
+  const TempFolder folder;
+  struct Case {
+    const char* type;
+    std::vector<const char*> names;
+    const char *first, *second;
+    Vec3f light[2];
+  };
+  const Case cases[] = {
+      {"uchar",
+       {"red", "green", "blue"},
+       "51 0 255",
+       "0 1 2",
+       {{0.2f, 0, 1}, {0, 1 / 255.f, 2 / 255.f}}},
+      {"ushort", {"red", "green", "blue"}, "13107 0 65535", "0 0 0", {{0.2f, 0, 1}, {0, 0, 0}}},
+      {"float", {"red", "green", "blue"}, "0.2 0 7", "1 1 1", {{0.2f, 0, 7}, {1, 1, 1}}},
+      {"float", {"r", "g", "b"}, "1 2 3", "4 5 6", {{1, 2, 3}, {4, 5, 6}}},
+      {"double", {"illuminance"}, "9", "8", {{9, 9, 9}, {8, 8, 8}}},
+      {"uchar",
+       {"diffuse_red", "diffuse_green", "diffuse_blue"},
+       "255 0 0",
+       "0 255 0",
+       {{1, 0, 0}, {0, 1, 0}}}};
+  for (const Case& c : cases) {
+    const Scene scene = load(folder.write("f.ply", square_of_faces(properties_of(c.type, c.names),
+                                                                   c.first, c.second)))
+                            .scene;
+    ASSERT_TRUE(scene.lit()) << c.type << " " << c.names[0];
+    EXPECT_EQ(scene.positions.size(), 6u);
+    for (std::size_t k = 0; k < 6; ++k)
+      EXPECT_EQ(scene.illumination[scene.indices[k]], c.light[k / 3])
+          << c.type << " " << c.names[0];
+  }
+  const Scene same =
+      load(folder.write("s.ply", square_of_faces(properties_of("uchar", {"red", "green", "blue"}),
+                                                 "9 8 7", "9 8 7")))
+          .scene;
+  EXPECT_EQ(same.positions.size(), 4u);
+}
+
+// They are colours of scans like those of vertices, and linear by the same names.
+TEST(Ply, ColoursOfFacesAreDecoded) {
+  const TempFolder folder;
+  const auto first = [&](std::vector<const char*> names) {
+    return load(folder.write("f.ply",
+                             square_of_faces(properties_of("float", names), "0.5 1 2", "0 0 0")),
+                {.srgb_colours = true})
+        .scene.illumination[0];
+  };
+  EXPECT_EQ(first({"red", "green", "blue"}), (Vec3f{srgb_decode(0.5f), 1, 2}));
+  EXPECT_EQ(first({"illuminance_r", "illuminance_g", "illuminance_b"}), (Vec3f{0.5f, 1, 2}));
+}
+
+TEST(Ply, ColoursOfFacesGiveWayToThoseOfVertices) {
+  const TempFolder folder;
+  const std::string rgb = properties_of("uchar", {"red", "green", "blue"});
+  const LoadedScene loaded = load(
+      folder.write("f.ply",
+                   "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\n"
+                   "property float z\n" +
+                       rgb + "element face 1\nproperty list uchar int vertex_indices\n" + rgb +
+                       "end_header\n0 0 0 255 0 0\n1 0 0 0 0 0\n0 1 0 0 0 0\n3 0 1 2 0 255 0\n"));
+  EXPECT_EQ(loaded.scene.illumination[0], (Vec3f{1, 0, 0}));
+  ASSERT_EQ(loaded.defects.count(DefectKind::element_ignored), 1u);
+  EXPECT_NE(loaded.defects.lines()[0].find("colours of faces"), std::string::npos);
+}
+
+TEST(Ply, AlphaOfFacesIsKept) {
+  const TempFolder folder;
+  const auto path = folder.write(
+      "f.ply", square_of_faces(properties_of("uchar", {"red", "green", "blue", "alpha"}),
+                               "9 8 7 51", "9 8 7 255"));
+  const Scene scene = load(path, {.rest = true}).scene;
+  ASSERT_EQ(scene.vertex_opacity.size(), 6u);
+  for (std::size_t k = 0; k < 6; ++k)
+    EXPECT_EQ(scene.vertex_opacity[scene.indices[k]], k < 3 ? 0.2f : 1);
+}
+
 TEST(Ply, TexturesAreNamedInComments) {
   const TempFolder folder;
   const auto path =

@@ -330,5 +330,33 @@ TEST(Polygon, BeyondAMillionCornersAFanIsCut) {
   EXPECT_EQ(triangles.size(), saw.size() - 2);
 }
 
+// Outlines that cross themselves everywhere have few ears, and each corner blocks the others.
+TEST(Polygon, KnotsTakeNoLonger) {
+  std::mt19937 random(3);
+  std::uniform_real_distribution<double> place(0, 1);
+  std::vector<std::array<std::uint32_t, 3>> triangles;
+  for (const bool few : {false, true}) {
+    std::vector<Vec3d> corners;
+    for (int i = 0; i < 100'000; ++i)
+      corners.push_back(few ? Vec3d{double(random() % 20), double(random() % 20), 0}
+                            : Vec3d{place(random), place(random), 0});
+    const double begun = cpu_seconds();
+    triangulate(corners, triangles);
+    EXPECT_LT(cpu_seconds() - begun, 1e-4 * 100'000 * test::kSlowness) << few;
+    EXPECT_EQ(triangles.size(), corners.size() - 2);
+  }
+}
+
+TEST(Polygon, OutlinesDoNotGoRoundAndRound) {
+  std::vector<std::int64_t> ring, twice, often;
+  for (int i = 0; i < 1000; ++i) ring.push_back(i);
+  for (int i = 0; i < 1000; ++i) twice.push_back(i < 500 ? i : 999 - i);  // there and back
+  for (int i = 0; i < 1000; ++i) often.push_back(i % 3);
+  EXPECT_FALSE(goes_round_and_round(ring));
+  EXPECT_FALSE(goes_round_and_round(twice));
+  EXPECT_TRUE(goes_round_and_round(often));
+  EXPECT_FALSE(goes_round_and_round(std::vector<std::int64_t>{0, 1, 2, 0, 1, 2}));
+}
+
 }  // namespace
 }  // namespace atlas

@@ -15,23 +15,23 @@
 namespace atlas::test {
 namespace {
 
-constexpr int kSide = 250;  // corners of a grid along each side
+constexpr int kCornersASide = 250;  // corners of a grid along each side
 
 std::string points(const char* before, const char* after) {
   std::string text;
-  for (int y = 0; y < kSide; ++y)
-    for (int x = 0; x < kSide; ++x) text += fmt::format("{}{} {} 0{}", before, x, y, after);
+  for (int y = 0; y < kCornersASide; ++y)
+    for (int x = 0; x < kCornersASide; ++x) text += fmt::format("{}{} {} 0{}", before, x, y, after);
   return text;
 }
 
 // Calls add(a, b, c) for the triangles of the grid.
 template <class Add>
 void for_triangles(const Add& add) {
-  for (int y = 0; y + 1 < kSide; ++y) {
-    for (int x = 0; x + 1 < kSide; ++x) {
-      const int a = y * kSide + x;
-      add(a, a + 1, a + kSide);
-      add(a + 1, a + kSide + 1, a + kSide);
+  for (int y = 0; y + 1 < kCornersASide; ++y) {
+    for (int x = 0; x + 1 < kCornersASide; ++x) {
+      const int a = y * kCornersASide + x;
+      add(a, a + 1, a + kCornersASide);
+      add(a + 1, a + kCornersASide + 1, a + kCornersASide);
     }
   }
 }
@@ -47,7 +47,8 @@ std::string text_stl() {
   std::string text = "solid s\n";
   for_triangles([&](int a, int b, int c) {
     text += "facet normal 0 0 1\nouter loop\n";
-    for (const int v : {a, b, c}) text += fmt::format("vertex {} {} 0\n", v % kSide, v / kSide);
+    for (const int v : {a, b, c})
+      text += fmt::format("vertex {} {} 0\n", v % kCornersASide, v / kCornersASide);
     text += "endloop\nendfacet\n";
   });
   return text + "endsolid s\n";
@@ -59,7 +60,7 @@ std::string binary_stl() {
   for_triangles([&](int a, int b, int c) {
     std::vector<float> n{0, 0, 1};
     for (const int v : {a, b, c})
-      for (const int k : {v % kSide, v / kSide, 0}) n.push_back(float(k));
+      for (const int k : {v % kCornersASide, v / kCornersASide, 0}) n.push_back(float(k));
     bytes.append(reinterpret_cast<const char*>(n.data()), 48).append(2, '\0');
     ++count;
   });
@@ -69,8 +70,8 @@ std::string binary_stl() {
 std::string glb() {
   Gltf g;
   std::vector<float> places;
-  for (int v = 0; v < kSide * kSide; ++v)
-    for (const int k : {v % kSide, v / kSide, 0}) places.push_back(float(k));
+  for (int v = 0; v < kCornersASide * kCornersASide; ++v)
+    for (const int k : {v % kCornersASide, v / kCornersASide, 0}) places.push_back(float(k));
   std::vector<std::uint32_t> corners;
   for_triangles([&](int a, int b, int c) {
     for (const int v : {a, b, c}) corners.push_back(std::uint32_t(v));
@@ -86,7 +87,8 @@ struct File {
 };
 
 std::vector<File> all_formats() {
-  const int vertices = kSide * kSide, faces = 2 * (kSide - 1) * (kSide - 1);
+  const int vertices = kCornersASide * kCornersASide,
+            faces = 2 * (kCornersASide - 1) * (kCornersASide - 1);
   return {
       {"a.obj", points("v ", "\n") + triangles("f {} {} {}\n", 1)},
       {"a.ply", fmt::format("ply\nformat ascii 1.0\nelement vertex {}\nproperty float x\nproperty "
@@ -117,7 +119,8 @@ TEST(ReadingProgress, RisesInAllFormats) {
     };
     const auto loaded = read_scene(path, {}, context);
     ASSERT_TRUE(loaded.ok()) << loaded.status().message();
-    EXPECT_EQ(loaded->scene.triangle_count(), 2u * (kSide - 1) * (kSide - 1)) << name;
+    EXPECT_EQ(loaded->scene.triangle_count(), 2u * (kCornersASide - 1) * (kCornersASide - 1))
+        << name;
     EXPECT_GE(fractions.size(), 6u) << name;
     for (std::size_t i = 1; i < fractions.size(); ++i)
       EXPECT_LE(fractions[i - 1], fractions[i]) << name;

@@ -16,7 +16,7 @@ namespace {
 using test::TempFolder;
 using Triangle = std::array<Vec3d, 3>;
 
-Result<LoadedScene> load(const std::string& bytes) {
+Result<LoadedScene> load_stl(const std::string& bytes) {
   const TempFolder folder;
   return read_scene(folder.write("a.stl", bytes), {}, {});
 }
@@ -55,7 +55,7 @@ const std::vector<Triangle> kFan{{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}},
 // Corners at the same place become one vertex. Vertices are numbered in the order of the file.
 TEST(Stl, SoupIsJoined) {
   for (const std::string& bytes : {binary(kFan), binary(kFan, ""), text(kFan)}) {
-    const auto loaded = load(bytes);
+    const auto loaded = load_stl(bytes);
     ASSERT_TRUE(loaded.ok()) << loaded.status().message();
     const Scene& s = loaded->scene;
     EXPECT_TRUE(loaded->defects.empty());
@@ -75,7 +75,7 @@ TEST(Stl, ManyVertices) {
     }
   }
   for (const std::string& bytes : {binary(grid), text(grid)}) {
-    const auto loaded = load(bytes);
+    const auto loaded = load_stl(bytes);
     ASSERT_TRUE(loaded.ok()) << loaded.status().message();
     EXPECT_EQ(loaded->scene.positions.size(), 61u * 61u);
     EXPECT_EQ(loaded->scene.triangle_count(), 7200u);
@@ -85,7 +85,7 @@ TEST(Stl, ManyVertices) {
 // Names that contain characters for comments or joined lines, keywords in any case, several solids,
 // and loops of more corners, all of it on few lines.
 TEST(Stl, TextAsProgramsWriteIt) {
-  const auto loaded = load(
+  const auto loaded = load_stl(
       "\r\nSOLID C:\\parts\\#1 facet\\\r\nFACET NORMAL nan nan nan OUTER LOOP VERTEX 0 0 0 VERTEX "
       "1 "
       "0 0\nvertex 1 1 0\nvertex +0.0 1e0 0\nENDLOOP ENDFACET\nEndSolid\n\nsolid\nfacet outer "
@@ -104,7 +104,7 @@ TEST(Stl, DefectsAreCounted) {
   triangles[1][1].y = NAN;
   triangles[2][1].y = NAN;
   for (const std::string& bytes : {binary(triangles) + "more", text(triangles)}) {
-    const auto loaded = load(bytes);
+    const auto loaded = load_stl(bytes);
     ASSERT_TRUE(loaded.ok()) << loaded.status().message();
     EXPECT_EQ(loaded->scene.triangle_count(), 1u);
     EXPECT_EQ(loaded->defects.count(DefectKind::bad_position_used), 2u);
@@ -119,7 +119,7 @@ TEST(Stl, DefectsAreNamedByTheirPlaces) {
   std::vector<Triangle> triangles = kFan;
   triangles[1][1].y = NAN;
   const auto places = [&](const std::string& bytes) {
-    const auto loaded = load(bytes);
+    const auto loaded = load_stl(bytes);
     EXPECT_TRUE(loaded.ok()) << loaded.status().message();
     std::string all;
     for (const std::string& line : loaded->defects.lines())
@@ -133,15 +133,15 @@ TEST(Stl, DefectsAreNamedByTheirPlaces) {
 
 // What begins with 'solid' is text, unless the size says otherwise or a zero is near.
 TEST(Stl, TextAndBinaryAreToldApart) {
-  EXPECT_EQ(load("\xef\xbb\xbf \n\t" + text(kFan)).status().message(), "");
-  const Status longer = load("solid" + std::string(100, ' ') + std::string(40, '\0')).status();
+  EXPECT_EQ(load_stl("\xef\xbb\xbf \n\t" + text(kFan)).status().message(), "");
+  const Status longer = load_stl("solid" + std::string(100, ' ') + std::string(40, '\0')).status();
   EXPECT_NE(longer.message().find("triangles are announced"), std::string::npos)
       << longer.message();
 }
 
 TEST(Stl, FarCoordinatesKeepTheirDigits) {
   const double x = 1000000.001;
-  const auto loaded = load(text({{{{x, 0, 0}, {x + 0.001, 0, 0}, {x, 0.001, 0}}}}));
+  const auto loaded = load_stl(text({{{{x, 0, 0}, {x + 0.001, 0, 0}, {x, 0.001, 0}}}}));
   ASSERT_TRUE(loaded.ok());
   const Scene& s = loaded->scene;
   EXPECT_NEAR(s.origin.x + double(s.positions[1].x), x + 0.001, 1e-9);
@@ -151,7 +151,7 @@ TEST(Stl, EveryTruncationIsNoticed) {
   for (const std::string& bytes : {binary(kFan), text(kFan)}) {
     const std::size_t needed = bytes.size() - (bytes.back() == '\n' ? 5 : 0);
     for (std::size_t length = 0; length < needed; ++length) {
-      const auto loaded = load(bytes.substr(0, length));
+      const auto loaded = load_stl(bytes.substr(0, length));
       ASSERT_FALSE(loaded.ok()) << length;
       EXPECT_EQ(loaded.status().code(), ErrorCode::bad_input);
       EXPECT_NE(loaded.status().message().find("a.stl"), std::string::npos);
@@ -167,7 +167,7 @@ TEST(Stl, RandomDamageNeverCrashes) {
     for (int hits = 1 + int(random() % 3); hits > 0; --hits) {
       bytes[random() % bytes.size()] = char(random());
     }
-    const auto loaded = load(bytes);
+    const auto loaded = load_stl(bytes);
     if (!loaded.ok()) continue;
     ++survived;
     ASSERT_TRUE(test::sound(loaded->scene));

@@ -85,15 +85,40 @@ TEST(VrmlColours, ThatAreMissingAreReported) {
   EXPECT_EQ(missing(square(two + "colorIndex [ 0 1 9 -1 0 -7 ]")), 2u);
 }
 
-// Colours of faces are not used in any format.
-TEST(VrmlColours, OfFacesAreReported) {
+TEST(VrmlColours, OfFacesBecomeThoseOfTheirCorners) {
   const TempFolder folder;
-  const auto loaded =
-      read(folder, square("color Color { color [ 1 0 0, 0 1 0 ] } colorPerVertex FALSE"));
-  ASSERT_TRUE(loaded.ok());
-  EXPECT_FALSE(loaded->scene.lit());
-  ASSERT_EQ(loaded->defects.count(DefectKind::element_ignored), 1u);
-  EXPECT_NE(loaded->defects.lines()[0].find("Color of faces"), std::string::npos);
+  const auto of = [&](const std::string& fields) {
+    return reds(scene_of(folder, square("colorPerVertex FALSE " + fields)));
+  };
+  const std::string two = "color Color { color [ 0.1 0 0, 0.2 0 0 ] }";
+  EXPECT_EQ(of(two), (Reds{1, 1, 1, 2, 2, 2}));
+  EXPECT_EQ(of(two + " colorIndex [ 1 0 ]"), (Reds{2, 2, 2, 1, 1, 1}));
+  EXPECT_EQ(of("colorIndex [ 1 1 ] " + two), (Reds{2, 2, 2, 2, 2, 2}));
+  EXPECT_EQ(of("color Color { color 0.3 0 0 } colorIndex [ 0 0 ]"), (Reds{3, 3, 3, 3, 3, 3}));
+  // Points keep their texture coordinates, and are divided only where faces differ.
+  const Scene scene = scene_of(
+      folder,
+      square("colorPerVertex FALSE texCoord TextureCoordinate { point [ 0 0, 1 0, 1 1, 0 1 ] "
+             "} " +
+             two));
+  EXPECT_EQ(scene.indices, (Ids{0, 1, 2, 4, 5, 3}));
+  EXPECT_EQ(scene.texcoord_indices, (Ids{0, 1, 2, 0, 2, 3}));
+  EXPECT_EQ(
+      scene_of(folder, square("colorPerVertex FALSE colorIndex [ 1 1 ] " + two)).positions.size(),
+      4u);
+}
+
+// A face without a colour of its own has none of the others'.
+TEST(VrmlColours, OfFacesThatAreMissingAreReported) {
+  const TempFolder folder;
+  const auto missing = [&](const std::string& fields) {
+    const auto loaded = read(folder, square("colorPerVertex FALSE " + fields));
+    EXPECT_TRUE(loaded.ok());
+    return loaded.ok() ? loaded->defects.count(DefectKind::illumination_missing) : 0;
+  };
+  EXPECT_EQ(missing("color Color { color [ 0.1 0 0 ] }"), 3u);
+  EXPECT_EQ(missing("color Color { color [ 0.1 0 0, 0.2 0 0 ] } colorIndex [ 0 -1 ]"), 3u);
+  EXPECT_EQ(missing("color Color { color [ 0.1 0 0, 0.2 0 0 ] } colorIndex [ 7 7 ]"), 4u);
 }
 
 TEST(VrmlColours, MayBeEncoded) {

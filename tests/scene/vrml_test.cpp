@@ -218,8 +218,9 @@ TEST(Vrml, UseOfNothingOrWithoutEndIsRefused) {
         i + 1, i, i);
   const double begun = cpu_seconds();
   const std::string much = message("Switch { choice [\n" + bomb + "] } USE a100");
-  EXPECT_NE(much.find("a.wrl:103: USE repeats more than the 1024 MiB of text that are read of "
-                      "this file (make several files of it, or show less by USE)"),
+  EXPECT_NE(much.find("a.wrl:103: USE repeats more than the 64 MiB of text that are read of "
+                      "this file (make several files of it, or show less by USE; "
+                      "ReadOptions::limits lifts the limit)"),
             std::string::npos)
       << much;
   EXPECT_LT(cpu_seconds() - begun, 1);
@@ -240,7 +241,7 @@ TEST(Vrml, SmallFilesCannotFillTheMemoryWithUse) {
   const auto loaded = read(folder, nodes + "] } USE a17");
   ASSERT_FALSE(loaded.ok());
   const std::string& message = loaded.status().message();
-  EXPECT_NE(message.find("USE repeats more than the 1024 MiB"), std::string::npos) << message;
+  EXPECT_NE(message.find("USE repeats more than the 64 MiB"), std::string::npos) << message;
   EXPECT_LT(cpu_seconds() - begun, 1);
 }
 
@@ -250,9 +251,42 @@ TEST(Vrml, SmallFilesMayMeanLargeScenes) {
   std::string nodes = "DEF a Group { children [ " + shape(0) + " WorldInfo { info \"" +
                       std::string(100'000, 'x') + "\" } ] }\n";
   for (int i = 0; i < 1500; ++i) nodes += "USE a ";
-  const auto loaded = read(folder, nodes);
+  ASSERT_FALSE(read(folder, nodes).ok());
+  const auto loaded =
+      read_scene(folder.write("a.wrl", "#VRML V2.0 utf8\n" + nodes), {.limits = false}, {});
   ASSERT_TRUE(loaded.ok()) << loaded.status().message();
   EXPECT_EQ(loaded->scene.triangle_count(), 1501u);
+}
+
+// What is repeated is counted before any of it is copied, also where single nodes repeat little.
+TEST(Vrml, RepetitionsAreCountedBeforeTheyAreRead) {
+  const TempFolder folder;
+  std::string nodes = "DEF a0 " + shape(0);
+  for (int i = 0; i < 9; ++i)
+    nodes += fmt::format("DEF a{0} Group {{ children [ USE a{1} USE a{1} USE a{1} USE a{1} ] }}\n",
+                         i + 1, i);
+  for (int i = 0; i < 20; ++i) nodes += "USE a8 Shape { appearance NULL geometry USE a0 }\n";
+  const double begun = cpu_seconds();
+  EXPECT_FALSE(read(folder, nodes).ok());
+  EXPECT_LT(cpu_seconds() - begun, 0.3);
+}
+
+// Brackets within brackets are passed over once, not once for each pair around them.
+TEST(Vrml, DeepGroupsTakeNoLonger) {
+  const TempFolder folder;
+  const auto seconds = [&](int depth) {
+    std::string nodes;
+    for (int i = 0; i < depth; ++i) nodes += "Group { children [\n";
+    nodes += "WorldInfo { info [ ";
+    for (int i = 0; i < 100'000; ++i) nodes += "\"a\" \"b\"\n";
+    nodes += "] } " + shape(0);
+    for (int i = 0; i < depth; ++i) nodes += "] }";
+    const double begun = cpu_seconds();
+    EXPECT_TRUE(read(folder, nodes).ok());
+    return cpu_seconds() - begun;
+  };
+  seconds(1);
+  EXPECT_LT(seconds(190), 10 * seconds(1));
 }
 
 // A hidden node may repeat without end, and it does not hide how much other nodes repeat.
@@ -378,6 +412,80 @@ TEST(Vrml, WhatIsNotReadIsNamedWithItsLine) {
   EXPECT_EQ(line.find("2 x elements ignored"), 0u) << line;
   EXPECT_NE(line.find("a.wrl:5: Inline"), std::string::npos) << line;
   EXPECT_NE(line.find("a.wrl:7: Box"), std::string::npos) << line;
+}
+
+TEST(Vrml, WorldWithoutFacesSaysWhy) {
+  const TempFolder folder;
+  const auto why = [&](const std::string& nodes) {
+    const auto loaded = read(folder, nodes);
+    EXPECT_EQ(loaded.status().code(), ErrorCode::bad_input) << nodes;
+    return loaded.status().message();
+  };
+  const std::string path = (folder / "a.wrl").string();
+  EXPECT_EQ(why("Shape { geometry Sphere { } } Transform { children [ Inline { url \"b.wrl\" }\n"
+                "Shape { geometry Box { } } Shape { geometry Box { } } ] }"),
+            path +
+                ": no triangle to work on: of what shows faces only IndexedFaceSet is read, not "
+                "Box, Inline, Sphere (export the scene as a triangle mesh)");
+  EXPECT_EQ(why("PROTO Chair [ field SFColor c 1 0 0 ] { Shape { geometry Box { } } } Chair { }"),
+            path +
+                ": no triangle to work on: PROTO is not supported, and it declares Chair (export "
+                "the scene as a triangle mesh)");
+  EXPECT_NE(why("EXTERNPROTO Lamp [ ] [ \"lamp.wrl\" ] DEF a Lamp { }").find("declares Lamp"),
+            std::string::npos);
+  const std::string both =
+      why("Shape { geometry Text { string \"a\" } } Switch { choice [ " + shape(0) + " ] }");
+  EXPECT_NE(both.find("not Text; it shows none of the children of 1 Switch"), std::string::npos)
+      << both;
+  EXPECT_NE(why("PointLight { }").find("it holds no face"), std::string::npos);
+}
+
+// The rest of a world is read, whatever is made by a PROTO.
+TEST(Vrml, PrototypesAreLeftOut) {
+  const TempFolder folder;
+  const auto loaded = read(
+      folder,
+      "DEF a " + shape(1) + "PROTO P [ field SFNode n DEF a Group { } ] { DEF a " + shape(2) +
+          " }\nGroup { EXTERNPROTO Q [ field MFNode m ] \"q.wrl#Q\" children [ PROTO R [ ] { Group "
+          "{ } }\n" +
+          "P { n USE a } R { } USE a ] PROTO S [ ] { Material { } } }\n" +
+          shape(3, "Appearance { material S { } texture S { } }") + shape(4, "S { a 1 b [ 2 ] }"));
+  ASSERT_TRUE(loaded.ok()) << loaded.status().message();
+  EXPECT_EQ(places(loaded->scene), (Places{1, 1, 3, 4}));
+  EXPECT_EQ(loaded->defects.count(DefectKind::element_ignored), 5u);
+}
+
+// A list of one value may do without its brackets.
+TEST(Vrml, SingleValuesNeedNoBrackets) {
+  const TempFolder folder;
+  const std::string rest = " coordIndex [ 0 0 0 -1 ] } }\n";
+  const std::string point = "Shape { geometry IndexedFaceSet { coord Coordinate { point 7 0 0 } ";
+  EXPECT_EQ(places(folder, shape(1) + point + rest), (Places{1, 7}));
+  EXPECT_EQ(places(folder, shape(1) + point +
+                               "texCoord TextureCoordinate { point 0.5 0.25 } "
+                               "texCoordIndex 0 colorIndex 0 color Color { color\n"
+                               "1 0 0.5 }" +
+                               rest),
+            (Places{1, 7}));
+  EXPECT_EQ(places(folder, point + "coordIndex 0 } }" + shape(2)), (Places{2}));
+  const auto far = read(folder, "WorldInfo { info \"origin 5 0 0: x\" } " + shape(1));
+  ASSERT_TRUE(far.ok());
+  EXPECT_EQ(places(far->scene), Places{6});
+  const auto wrong =
+      read(folder, "Shape { geometry IndexedFaceSet { coord Coordinate { point 1 2 }");
+  EXPECT_NE(wrong.status().message().find("'}' is not a number"), std::string::npos)
+      << wrong.status().message();
+}
+
+// A list that is cut short ends the reading, wherever it is.
+TEST(Vrml, ListsWithoutAnEndAreRefused) {
+  const TempFolder folder;
+  for (const char* nodes :
+       {"Inline { url [ \"a.wrl\"", "EXTERNPROTO A [ ] [ \"a.wrl\"", "WorldInfo { info [ \"a\"",
+        "Shape { appearance Appearance { texture MovieTexture { url [ \"a.mpg\""}) {
+    const auto loaded = read(folder, nodes);
+    EXPECT_NE(loaded.status().message().find("ends inside a list"), std::string::npos) << nodes;
+  }
 }
 
 }  // namespace

@@ -2,11 +2,14 @@
 #pragma once
 
 #include <cmath>
+#include <numbers>
 #include <random>
 
 #include "libatlas/core/vec.h"
 
 namespace atlas::test {
+
+inline constexpr double kDegree = std::numbers::pi / 180;
 
 // Returns a vector whose direction is uniform on the sphere. Its length is about two.
 inline Vec3d random_direction(std::mt19937& rng) {

@@ -6,16 +6,14 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <numbers>
 #include <utility>
 
 #include "libatlas/core/vec.h"
 #include "libatlas/shadow/blend.h"
 #include "libatlas/shadow/schedule.h"
+#include "tests/shadow/directions.h"
 
 namespace atlas::test {
-
-inline constexpr double kDegree = std::numbers::pi / 180;
 
 inline double degrees_between(const Vec3d& a, const Vec3d& b) {
   return angle_between(a, b) / kDegree;

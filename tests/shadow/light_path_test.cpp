@@ -15,7 +15,7 @@
 namespace atlas {
 namespace {
 
-constexpr double kDegree = std::numbers::pi / 180;
+using test::kDegree;
 
 LightPath must(const LightPathOptions& options) {
   Result<LightPath> path = LightPath::make(options);

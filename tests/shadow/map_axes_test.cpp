@@ -6,7 +6,6 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <numbers>
 #include <random>
 
 #include "libatlas/shadow/fit.h"
@@ -15,13 +14,13 @@
 namespace atlas {
 namespace {
 
-constexpr double kDegree = std::numbers::pi / 180;
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+constexpr double kNotANumber = std::numeric_limits<double>::quiet_NaN();
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr std::array<Vec3d, 3> kAxes{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
 
 using test::cross;
 using test::dot;
+using test::kDegree;
 using test::scaled;
 using test::unit;
 
@@ -83,7 +82,7 @@ TEST(MapAxes, TheAxisFarthestFromTheLightReplacesAnUnusableVertical) {
         kAxes, {}, [&](const Vec3d& axis) { return std::abs(dot(axis, l)); });
     for (const Vec3d& up :
          {light, scaled(light, -1), scaled(light, 1e-200), scaled(light, 1e200), Vec3d{0, 0, 0},
-          Vec3d{kNan, 0, 0}, Vec3d{0, kNan, 1}, Vec3d{0, 1, kInfinity}})
+          Vec3d{kNotANumber, 0, 0}, Vec3d{0, kNotANumber, 1}, Vec3d{0, 1, kInfinity}})
       expect_upright(map_axes(light, up), light, farthest);
   }
 }

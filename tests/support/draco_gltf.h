@@ -29,7 +29,8 @@ struct DracoSource {
   std::size_t points = 0;
   std::vector<DracoValues> attributes;
   bool sequential = true;  // keeps the order of points; the other method does not
-  int bits = 0;            // of positions that are quantised; 0: they are not
+  int bits = 0;            // of positions and uvs that are quantised; 0: they are not
+  int speed = 5;           // of Draco, 0..10; below 4, quantised uvs are predicted from positions
   bool metadata = false;
 };
 
@@ -59,8 +60,11 @@ inline std::vector<unsigned char> compress(const DracoSource& source) {
   draco::Encoder encoder;
   encoder.SetEncodingMethod(source.sequential ? draco::MESH_SEQUENTIAL_ENCODING
                                               : draco::MESH_EDGEBREAKER_ENCODING);
+  encoder.SetSpeedOptions(source.speed, source.speed);
   if (source.bits > 0)
-    encoder.SetAttributeQuantization(draco::GeometryAttribute::POSITION, source.bits);
+    for (const auto kind :
+         {draco::GeometryAttribute::POSITION, draco::GeometryAttribute::TEX_COORD})
+      encoder.SetAttributeQuantization(kind, source.bits);
   draco::EncoderBuffer out;
   if (!encoder.EncodeMeshToBuffer(mesh, &out).ok()) return {};
   return {out.data(), out.data() + out.size()};

@@ -1,6 +1,7 @@
 // atlas-measure: the measures of the tests as a program.
 //   atlas-measure atlas FILE.obj WIDTH HEIGHT               uv quality, overlaps and bleeding
-//   atlas-measure world SCENE.obj WORLD.(wrl|obj) [CAMERAS] how the world looks beside the scene
+//   atlas-measure world SCENE.obj WORLD.(wrl|obj|html) [CAMERAS] how the world looks beside the
+//   scene
 #include <fmt/format.h>
 
 #include <cstdio>
@@ -66,6 +67,6 @@ int main(int argc, char** argv) {
     return measure_world(argv[2], argv[3], argc == 5 ? std::atoi(argv[4]) : 12);
   fmt::print(stderr,
              "usage: atlas-measure atlas FILE.obj WIDTH HEIGHT\n"
-             "       atlas-measure world SCENE.obj WORLD.wrl|WORLD.obj [CAMERAS]\n");
+             "       atlas-measure world SCENE.obj WORLD.(wrl|obj|html) [CAMERAS]\n");
   return 2;
 }

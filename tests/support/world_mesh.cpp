@@ -13,6 +13,7 @@
 #include <string_view>
 
 #include "libatlas/image/image_io.h"
+#include "tests/support/html_page.h"
 #include "tests/support/vrml_nodes.h"
 
 namespace atlas::test {
@@ -132,6 +133,39 @@ void read_obj(const fs::path& path, WorldMesh& mesh) {
   } while (words.next_line());
 }
 
+// Adds the triangles of a page of HTML in the coordinates of its scene.
+void read_html(const fs::path& path, WorldMesh& mesh) {
+  const HtmlPage page(read_text(path));
+  for (std::size_t i = 0; i < page.world["pages"].size(); ++i) {
+    const std::string bytes = page.data("page" + std::to_string(i));
+    auto image = decode_image8({reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size()},
+                               path.string());
+    if (!image.ok()) throw std::runtime_error(image.status().message());
+    mesh.images.push_back(std::move(*image));
+    mesh.surfaces.push_back({glm::vec3(1), int(i)});
+  }
+  const bool z_up = page.world["up"] == "z";
+  const double metres = page.world["metresPerUnit"];
+  const auto& origin = page.world["origin"];
+  const auto in_scene = [&](const std::array<double, 3>& p) {
+    const glm::dvec3 turned = z_up ? glm::dvec3(p[0], -p[2], p[1]) : glm::dvec3(p[0], p[1], p[2]);
+    return glm::vec3(turned / metres + glm::dvec3(origin[0].get<double>(), origin[1].get<double>(),
+                                                  origin[2].get<double>()));
+  };
+  for (const HtmlPage::Part& part : page.parts)
+    for (const auto& triangle : part.triangles) {
+      const auto first = std::uint32_t(mesh.positions.size());
+      for (const HtmlPage::Corner& corner : triangle) {
+        mesh.positions.push_back(in_scene(corner.position));
+        mesh.light.emplace_back(1);
+        mesh.texcoords.emplace_back(corner.uv[0], corner.uv[1]);
+      }
+      mesh.triangles.push_back({first, first + 1, first + 2});
+      mesh.triangle_texcoords.push_back({first, first + 1, first + 2});
+      mesh.triangle_surface.push_back(std::uint32_t(part.page));
+    }
+}
+
 glm::dmat4 transform_of(const vrml::Node& node) {
   const auto numbers = [&](const char* name, std::vector<double> otherwise) {
     const auto& n = node.field(name).numbers;
@@ -231,8 +265,10 @@ Result<WorldMesh> read_world(const fs::path& path) {
       const vrml::Nodes nodes = vrml::read_nodes(read_text(path));
       Gatherer gatherer(mesh, path.parent_path());
       for (const vrml::Node* root : nodes.roots) gatherer.gather(root, glm::dmat4(1));
+    } else if (path.extension() == ".html") {
+      read_html(path, mesh);
     } else {
-      return Status(ErrorCode::unsupported, path.string() + ": neither .obj nor .wrl");
+      return Status(ErrorCode::unsupported, path.string() + ": neither .obj, .wrl nor .html");
     }
   } catch (const std::exception& error) {
     return Status(ErrorCode::bad_input, path.string() + ": " + error.what());

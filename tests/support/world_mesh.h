@@ -30,8 +30,8 @@ struct WorldMesh {
   std::vector<Image8> images;  // origin bottom left
 };
 
-// Reads a file by its extension: .obj (with its MTL; v x y z r g b) or .wrl (Shapes under
-// Transforms, ImageTexture).
+// Reads a file by its extension: .obj (with its MTL; v x y z r g b), .wrl (Shapes under Transforms,
+// ImageTexture) or .html (whose pages are images).
 Result<WorldMesh> read_world(const std::filesystem::path& path);
 
 }  // namespace atlas::test

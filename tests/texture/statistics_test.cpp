@@ -129,6 +129,7 @@ TEST(Statistics, PercentilesAreSharesOfTheArea) {
   const LuminanceStatistics s = measure(shape);
   EXPECT_NEAR(s.median, 500, 1);
   EXPECT_NEAR(s.percentile98, 980, 0.2);
+  EXPECT_NEAR(s.percentile99, 990, 0.2);
   EXPECT_NEAR(s.maximum, 1000, 0.1);
   EXPECT_NEAR(s.minimum_log, std::log(10), 0.02);
   EXPECT_NEAR(s.maximum_log, std::log(990), 0.001);

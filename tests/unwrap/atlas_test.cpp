@@ -96,7 +96,7 @@ TEST(Atlas, OneMeshIsUnwrappedAsByUnwrapMesh) {
 }
 
 TEST(Atlas, MeshesGetTheirOwnBackAndDoNotLieOnEachOther) {
-  const UnwrappedAtlas atlas = unwrapped(atlas_of(three_shapes()), {.page_size = 512});
+  const UnwrappedAtlas atlas = unwrapped(atlas_of(three_shapes()), {{.page_size = 512}});
   ASSERT_EQ(atlas.mesh_count(), 3u);
   for (std::size_t i = 0; i < 3; ++i) expect_own(three_shapes()[i], atlas.mesh(i));
   const AtlasMeasures measures = measured(three_shapes(), atlas);
@@ -234,6 +234,26 @@ TEST(Atlas, MaterialsAndMarkedSeamsAreThoseOfTheirMesh) {
   EXPECT_EQ(charts, (std::vector<std::size_t>{1, 2, 1, plate.triangle_count()}));
 }
 
+// A roof of two plates with a ridge, whose vertices have one normal, or one for each side.
+TEST(Atlas, EdgesAtWhichNormalsDifferAreSeams) {
+  const Shape left = grid(4, 4);
+  Shape right = moved(grid(4, 4), 1, {1, 0, 0});
+  for (Vec3f& p : right.positions) p.z = 0.1f * (p.x - 1);
+  const Shape roof = together(left, right);
+  std::vector<Vec3f> normals(roof.positions.size(), {0, 0, 1});
+  const auto charts = [&] {
+    const StridedMesh mesh{.positions = {roof.positions.data(), roof.positions.size(), 0},
+                           .indices = {roof.indices.data(), roof.indices.size(), 4},
+                           .normals = {normals.data(), normals.size(), 0}};
+    Atlas atlas;
+    EXPECT_TRUE(atlas.add(mesh).ok());
+    return unwrapped(atlas).all().charts.charts.size();
+  };
+  EXPECT_EQ(charts(), 1u);
+  std::fill_n(normals.begin(), left.positions.size(), Vec3f{-0.1f, 0, 1});
+  EXPECT_EQ(charts(), 2u);
+}
+
 TEST(Atlas, GivenUvsAreKeptWhereAMeshHasThem) {
   const Shape plate = grid(4, 4);
   std::vector<Vec2f> uvs;
@@ -243,7 +263,7 @@ TEST(Atlas, GivenUvsAreKeptWhereAMeshHasThem) {
   Atlas atlas;
   ASSERT_TRUE(atlas.add(view_of(box(2))).ok());
   ASSERT_TRUE(atlas.add(given).ok());
-  const UnwrappedAtlas result = unwrapped(atlas, {.charts = {.keep_uv_charts = true}});
+  const UnwrappedAtlas result = unwrapped(atlas, {{}, {.keep_uv_charts = true}});
   EXPECT_EQ(result.all().charts.repairs.kept_charts, 1u);
   for (std::size_t c = 0; c < result.all().charts.charts.size(); ++c)
     EXPECT_EQ(result.all().charts.charts[c].kept, result.mesh_of_chart(c) == 1);

@@ -49,7 +49,7 @@ AtlasMeasures measured(const Uvs& given, const PackedIslands& packed) {
 
 TEST(Islands, LieBesideEachOtherWithTheirShapes) {
   const Uvs given = stacked_plates();
-  const auto packed = pack_islands(given.view(), {.page_size = 256}, {});
+  const auto packed = pack_islands(given.view(), {{.page_size = 256}}, {});
   ASSERT_TRUE(packed.ok()) << packed.status().message();
   EXPECT_EQ(packed->islands.size(), 5u);
   const AtlasMeasures measures = measured(given, *packed);
@@ -64,7 +64,7 @@ TEST(Islands, LieBesideEachOtherWithTheirShapes) {
 TEST(Islands, PlacementsTellWhereUvsGo) {
   Uvs given = stacked_plates();
   for (Vec2f& uv : given.uvs) uv = {uv.x - 3, uv.y + 5};
-  const auto packed = pack_islands(given.view(), {.page_size = 256}, {});
+  const auto packed = pack_islands(given.view(), {{.page_size = 256}}, {});
   ASSERT_TRUE(packed.ok()) << packed.status().message();
   for (std::size_t i = 0; i < given.indices.size(); ++i) {
     const PackedIslands::Island& island = packed->islands[packed->triangle_island[i / 3]];
@@ -78,12 +78,11 @@ TEST(Islands, PlacementsTellWhereUvsGo) {
 
 TEST(Islands, KeepAScaleThatIsAskedForAndUseSeveralPages) {
   const Uvs given = stacked_plates();
-  const auto scaled =
-      pack_islands(given.view(), {.page_size = 256, .texels_per_uv = 20, .square = true}, {});
+  const auto scaled = pack_islands(given.view(), {{.page_size = 256, .square = true}, 20}, {});
   ASSERT_TRUE(scaled.ok()) << scaled.status().message();
   EXPECT_DOUBLE_EQ(scaled->texels_per_uv, 20);
   EXPECT_EQ(scaled->pages[0].width, scaled->pages[0].height);
-  const auto several = pack_islands(given.view(), {.pages = 3, .page_size = 64}, {});
+  const auto several = pack_islands(given.view(), {{.pages = 3, .page_size = 64}}, {});
   ASSERT_TRUE(several.ok()) << several.status().message();
   EXPECT_GT(several->pages.size(), 1u);
   EXPECT_EQ(measured(given, *several).overlap, 0u);
@@ -114,12 +113,12 @@ TEST(Islands, UnusableOnesAreRefused) {
   for (const IslandView& view : {IslandView{points, triangle}, IslandView{points, {}}})
     EXPECT_EQ(pack_islands(view, {}, {}).status().code(), ErrorCode::bad_input);
   const Uvs plates = stacked_plates();
-  for (const IslandOptions& options : {IslandOptions{.pages = 0},
-                                       {.page_size = 32},
-                                       {.padding = -1},
-                                       {.alignment = 0},
-                                       {.texels_per_uv = NAN},
-                                       {.page_size = 100, .square = true}})
+  for (const IslandOptions& options : {IslandOptions{{.pages = 0}},
+                                       {{.page_size = 32}},
+                                       {{.padding = -1}},
+                                       {{.alignment = 0}},
+                                       {{}, NAN},
+                                       {{.page_size = 100, .square = true}}})
     EXPECT_EQ(pack_islands(plates.view(), options, {}).status().code(), ErrorCode::bad_option);
 }
 

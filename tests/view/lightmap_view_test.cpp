@@ -21,12 +21,6 @@
 namespace atlas::testing {
 namespace {
 
-// Returns the value in sRGB encoding, 0 to 255.
-double encoded(double value) {
-  const double v = std::clamp(value, 0.0, 1.0);
-  return 255 * (v <= 0.0031308 ? 12.92 * v : 1.055 * std::pow(v, 1 / 2.4) - 0.055);
-}
-
 Image8 picture(const ViewScene& view, const Camera& camera, const RenderOptions& options,
                const Vec3d& light = {1, 2, -0.5}) {
   test_context();

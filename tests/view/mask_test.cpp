@@ -37,7 +37,7 @@ Scene covered_floor(int opaque, float times) {
   return s;
 }
 
-RenderOptions small(ShadowMethod method) {
+RenderOptions small_with(ShadowMethod method) {
   RenderOptions o;
   o.width = o.height = 64;
   o.map_resolution = 256;
@@ -66,7 +66,7 @@ TEST(Mask, WhatIsFinerThanATexelOfTheMapCastsItsShareOfShadow) {
   for (int opaque : {1, 2, 3})
     for (float times : {61.3f, 149.7f})
       for (const ShadowMethod method : {ShadowMethod::classic, ShadowMethod::march}) {
-        RenderOptions o = small(method);
+        RenderOptions o = small_with(method);
         o.show_visibility = true;
         const Image8 image = picture(covered_floor(opaque, times), over(0.9), o);
         double sum = 0;
@@ -79,7 +79,7 @@ TEST(Mask, WhatIsFinerThanATexelOfTheMapCastsItsShareOfShadow) {
 TEST(Mask, WhatIsFinerThanAPixelIsSeenByItsShareInItsOwnColour) {
   for (int opaque : {1, 2, 3})
     for (const Shading shading : {Shading::unlit, Shading::lambert}) {
-      RenderOptions o = small(ShadowMethod::none);
+      RenderOptions o = small_with(ShadowMethod::none);
       o.shading = shading;
       const Image8 image = picture(covered_floor(opaque, 149.7f), over(2.5), o);
       int seen = 0;
@@ -101,7 +101,7 @@ TEST(Mask, WhereATextureIsOpaqueElsewhereItsColoursStay) {
   std::fill_n(s.triangle_material.rbegin(), 2, 2u);
   s.texcoords.push_back({0.5f, 0.75f});  // white
   s.texcoord_indices.resize(s.indices.size(), std::uint32_t(s.texcoords.size() - 1));
-  RenderOptions o = small(ShadowMethod::none);
+  RenderOptions o = small_with(ShadowMethod::none);
   o.shading = Shading::unlit;
   const Image8 image = picture(s, over(3), o);
   EXPECT_EQ(image.at(32, 32)[0], 255);

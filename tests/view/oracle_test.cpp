@@ -134,7 +134,7 @@ Agreement compare(const View& view, const Vec3d& light, const RenderOptions& opt
   return a;
 }
 
-struct Case {
+struct OracleCase {
   const char* name;
   View (*view)();
   Vec3d light;
@@ -152,12 +152,12 @@ RenderOptions classic_visibility(int pcf) {
 }
 
 TEST(Oracle, ClassicShadowsAgreeWithRaysAwayFromEdges) {
-  const Case cases[] = {{"courtyard", courtyard_view, {0.6, 1, 0.35}},
-                        {"courtyard, low sun", courtyard_view, {1, 0.35, -0.2}},
-                        {"room", room_view, {1, 0.7, 0.15}},
-                        {"pavilion", pavilion_view, {0.3, 0.8, 0.7}}};
+  const OracleCase cases[] = {{"courtyard", courtyard_view, {0.6, 1, 0.35}},
+                              {"courtyard, low sun", courtyard_view, {1, 0.35, -0.2}},
+                              {"room", room_view, {1, 0.7, 0.15}},
+                              {"pavilion", pavilion_view, {0.3, 0.8, 0.7}}};
   for (int pcf : {0, 3})
-    for (const Case& c : cases) {
+    for (const OracleCase& c : cases) {
       const Agreement a = compare(c.view(), c.light, classic_visibility(pcf));
       const double share = double(a.agreed) / a.compared;
       RecordProperty("agreement", std::to_string(share));

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <numbers>
@@ -164,6 +165,11 @@ Renderer must_render(const Scene& scene, const RenderOptions& options) {
 
 FrameLight still(const Vec3d& direction) {
   return {direction, [direction](int) { return direction; }};
+}
+
+double encoded(double value) {
+  const double v = std::clamp(value, 0.0, 1.0);
+  return 255 * (v <= 0.0031308 ? 12.92 * v : 1.055 * std::pow(v, 1 / 2.4) - 0.055);
 }
 
 }  // namespace atlas::testing

@@ -40,4 +40,7 @@ Renderer must_render(const Scene& scene, const RenderOptions& options);
 // Returns a frame's light that does not move.
 FrameLight still(const Vec3d& direction);
 
+// Returns a value of 0 to 1 in sRGB encoding, 0 to 255.
+double encoded(double value);
+
 }  // namespace atlas::testing

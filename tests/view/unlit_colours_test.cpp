@@ -19,15 +19,11 @@ namespace {
 
 using test::Gltf;
 using test::TempFolder;
-using Colour = std::array<double, 3>;
+using LinearColour = std::array<double, 3>;
 
-constexpr double kTexture = 0.2158;           // 128 of 255, decoded
-constexpr Colour kFactor{0.75, 1, 0.5};       // of the material
-constexpr double kFirstX = 0, kSecondX = 10;  // where the two squares are
-
-double encoded(double v) {
-  return 255 * (v <= 0.0031308 ? 12.92 * v : 1.055 * std::pow(v, 1 / 2.4) - 0.055);
-}
+constexpr double kTexture = 0.2158;            // 128 of 255, decoded
+constexpr LinearColour kFactor{0.75, 1, 0.5};  // of the material
+constexpr double kFirstX = 0, kSecondX = 10;   // where the two squares are
 
 // Two squares of one textured material, unlit or not, at both places. The argument of load() is
 // attributes that only the first one has.
@@ -73,7 +69,7 @@ class Squares {
 };
 
 // Returns the colour in the middle of the square at x.
-Colour seen(const ViewScene& view, double x, RenderOptions options) {
+LinearColour seen(const ViewScene& view, double x, RenderOptions options) {
   test_context();
   options.width = options.height = 65;
   options.map_resolution = 64;
@@ -85,21 +81,21 @@ Colour seen(const ViewScene& view, double x, RenderOptions options) {
   return {double(p[0]), double(p[1]), double(p[2])};
 }
 
-void expect_near(const Colour& shown, const Colour& linear) {
+void expect_near(const LinearColour& shown, const LinearColour& linear) {
   for (std::size_t c = 0; c < 3; ++c) EXPECT_NEAR(shown[c], encoded(linear[c]), 1.5) << c;
 }
 
-Colour times(double scale, const Colour& a, const Colour& b = {1, 1, 1}) {
+LinearColour times(double scale, const LinearColour& a, const LinearColour& b = {1, 1, 1}) {
   return {scale * a[0] * b[0], scale * a[1] * b[1], scale * a[2] * b[2]};
 }
 
 // The light of `first` is no light of unlit materials, whichever attribute gives it.
 TEST(UnlitColours, MultiplyTheTexture) {
-  const Colour left{0.25, 1, 0}, right{0.75, 0.5, 1}, middle{0.5, 0.75, 0.5};
+  const LinearColour left{0.25, 1, 0}, right{0.75, 0.5, 1}, middle{0.5, 0.75, 0.5};
   for (const bool bright : {false, true}) {
     Squares squares(true);
     std::vector<float> colours;
-    for (const Colour* c : {&left, &right, &right, &left})
+    for (const LinearColour* c : {&left, &right, &right, &left})
       for (const double v : *c) colours.push_back(float(v));
     nlohmann::json first = {{"COLOR_0", squares.gltf.floats(colours, "VEC3", 3)}};
     if (bright) first["_ILLUMINANCE"] = squares.gltf.floats(std::vector<float>(12, 300), "VEC3", 3);

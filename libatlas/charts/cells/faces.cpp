@@ -9,7 +9,7 @@ namespace atlas {
 namespace {
 
 // The normals of triangles in one plane differ by less than a quarter of a degree.
-constexpr float kFlatCosine = 1 - 1e-5f;
+constexpr float kOnePlaneCosine = 1 - 1e-5f;
 // A face has at least this share of the mean area of a cell in its piece. The value is not round,
 // so that facets of equal size do not lie at the limit.
 constexpr double kLeastArea = 0.2563;
@@ -72,7 +72,7 @@ class FaceFinder {
   glm::vec3 normal(std::uint32_t t) const { return to_glm(topology_.calm_normal(t)); }
 
   bool same_plane(std::uint32_t t, std::uint32_t u) const {
-    return glm::dot(normal(t), normal(u)) >= kFlatCosine;
+    return glm::dot(normal(t), normal(u)) >= kOnePlaneCosine;
   }
 
   // Whether no neighbour lies in the triangle's plane, as for most triangles of curved surfaces.

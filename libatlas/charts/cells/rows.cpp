@@ -10,7 +10,7 @@ namespace {
 // A triangle is a needle if its height over its shortest edge exceeds this many of that edge. The
 // value is not round, so that needles of equal shape do not lie at the limit. With 5.1, rows would
 // go on across the widest side of some mouldings.
-constexpr double kNeedle = 3.63;
+constexpr double kRowNeedle = 3.63;
 // The least share of a piece's area in needles.
 constexpr double kLeastShare = 0.5;
 
@@ -37,7 +37,7 @@ class RowFinder {
 
   // Whether h is the short edge of a needle.
   bool end(std::uint32_t h) const {
-    return 2.0 * topology_.areas[h / 3] > kNeedle * squared_length(h);
+    return 2.0 * topology_.areas[h / 3] > kRowNeedle * squared_length(h);
   }
 
   // Returns the share of the area in needles.

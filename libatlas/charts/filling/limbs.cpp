@@ -24,7 +24,7 @@ constexpr double kPoor = 0.9;  // of min_fill: charts that fill more stay whole
 constexpr double kLeastTogether = 0.68;
 // Each further piece must let the hulls shrink by this share of the mean hull: cutting small pieces
 // into smaller ones fills no page.
-constexpr double kLeastFall = 0.1;
+constexpr double kLeastHullFall = 0.1;
 // After so many charts in a row that cannot be cut with gain, the others stay whole. They waste
 // less, and a lattice, or a scan full of holes, has hundreds of them.
 constexpr int kMostInVain = 16;
@@ -86,7 +86,7 @@ class LimbCharts {
   // Cuts the chart unless its hull shrinks by too little for the number of pieces.
   bool cut_shrinks(std::size_t k, double hull, double mean) {
     if (!cut(k)) return false;
-    if (hull - hulls_of(k) >= kLeastFall * mean * double(pieces_[k].size() - 1)) return true;
+    if (hull - hulls_of(k) >= kLeastHullFall * mean * double(pieces_[k].size() - 1)) return true;
     pieces_[k].clear();
     --count_;
     return false;

@@ -14,7 +14,7 @@ namespace {
 
 constexpr int kDirections = 4;  // over half a turn, from u, the chart's long side
 constexpr std::array<double, 3> kPlaces{0.5, 0.33, 0.67};  // along the piece, the middle first
-constexpr double kBand = 0.15;                             // as a share of its length
+constexpr double kMiddleBand = 0.15;                       // as a share of its length
 
 // Returns the sprawl of these triangles. Only corners on boundary loops are used; those of holes do
 // no harm.
@@ -46,7 +46,7 @@ MiddleCut cut_middle(const FlatChart& chart, const param::HalfEdges& half_edges,
     const double extent = cutter.high() - cutter.low();
     for (const double place : kPlaces) {
       if (limits.context && limits.context->cancelled()) return middle;
-      LineCut made = cutter.cut(cutter.low() + place * extent, kBand * extent, limits.crumb);
+      LineCut made = cutter.cut(cutter.low() + place * extent, kMiddleBand * extent, limits.crumb);
       if (made.parts.empty()) continue;
       MiddleCut cut{{}, whole, made.length};
       for (LineCut::Part& part : made.parts) {

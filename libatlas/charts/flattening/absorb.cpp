@@ -60,10 +60,10 @@ constexpr double kSureFill = 0.995;
 // Charts are not joined if the two shapes of their common border differ by more than kMostMisfit of
 // its length. Small charts have many neighbours to try, so their limit is stricter.
 constexpr double kMostMisfit = 0.1, kMostSmallMisfit = 0.07;
-// A union of at least kManyTriangles is not tried if its parts overlap in kMostOverlap places
+// A union of at least kManyTrianglesToJoin is not tried if its parts overlap in kMostOverlap places
 // before it is solved for. Of 13 000 unions 750 were like that; 15 of these succeeded, and they
 // took 38 % of the time of all failures (208 meshes).
-constexpr std::size_t kManyTriangles = 250, kMostOverlap = 16;
+constexpr std::size_t kManyTrianglesToJoin = 250, kMostOverlap = 16;
 // Where a whole border does not fit, the longest run of it that fits to kMostRunMisfit of its
 // length is tried. Runs below kLeastRun of the smaller chart's border would leave about as much
 // seam as before.
@@ -220,7 +220,7 @@ class Absorber {
     const Outline &around_a = outline(k), &around_b = outline(neighbour.chart);
     const Extent extent{covered / kSureFill, joint.box(around_a, around_b)};
     if (!fills(k, neighbour.chart, extent, 2 * kMostWaste)) return false;
-    return joint.triangle_count() < kManyTriangles ||
+    return joint.triangle_count() < kManyTrianglesToJoin ||
            joint.overlap(around_a, around_b, kMostOverlap) < kMostOverlap;
   }
 

@@ -49,10 +49,10 @@ constexpr int kTelling = 2;
 // Rounds of joining boundary loops of a union: of 5900 unions none succeeded after more.
 constexpr int kMostJoints = 2;
 constexpr int kBestIterations = 8;
-// Charts of at least kManyTriangles that exceed the bound over more than kWideShare of their area
-// were never saved by cuts to vertices (measured). If they have a hole, it may be what they close
-// around.
-constexpr std::size_t kManyTriangles = 1000;
+// Charts of at least kManyTrianglesToCut that exceed the bound over more than kWideShare of their
+// area were never saved by cuts to vertices (measured). If they have a hole, it may be what they
+// close around.
+constexpr std::size_t kManyTrianglesToCut = 1000;
 constexpr double kWideShare = 0.04;
 // Measured on 90 meshes: where charts exceed the bound by this factor around a small hole, joining
 // the hole with the border saved 25 of 34, and a cut to a vertex none of 250.
@@ -241,7 +241,7 @@ class ChartJob {
   // Whether more than the surroundings of a few sharp vertices exceeds the bound.
   bool stretched_widely() const {
     if (noisy() || result_.within_bound || result_.uvs.empty()) return false;
-    if (chart_.triangles().size() < kManyTriangles) return false;
+    if (chart_.triangles().size() < kManyTrianglesToCut) return false;
     double beyond = 0;
     for (const std::uint32_t t : result_.offenders) {
       beyond += input_.topology.areas[chart_.triangles()[t]];

@@ -12,7 +12,7 @@ namespace {
 
 // Weight of the fold at an edge in the distance across it.
 constexpr double kNormalWeight = 8;
-constexpr double kFar = std::numeric_limits<double>::max();
+constexpr double kUnreached = std::numeric_limits<double>::max();
 
 struct Visit {
   double distance;
@@ -36,12 +36,13 @@ double fold(const Topology& topology, const LocalChart& chart, std::uint32_t s, 
 }
 
 // Grows regions over the triangles by Dijkstra's algorithm.
-class Regions {
+class GrownRegions {
  public:
-  Regions(const Topology& topology, const LocalChart& chart, std::span<const std::uint32_t> seeds)
+  GrownRegions(const Topology& topology, const LocalChart& chart,
+               std::span<const std::uint32_t> seeds)
       : topology_(topology),
         chart_(chart),
-        distance_(chart.corners.size(), kFar),
+        distance_(chart.corners.size(), kUnreached),
         owner_(chart.corners.size(), 0) {
     // No seed may take another one.
     for (const std::uint32_t seed : seeds) distance_[seed] = 0;
@@ -83,16 +84,16 @@ class Regions {
 
 std::uint32_t farthest_from(const Topology& topology, const LocalChart& chart,
                             std::uint32_t start) {
-  const Regions region(topology, chart, {&start, 1});
+  const GrownRegions region(topology, chart, {&start, 1});
   const std::vector<double>& distance = region.distance();
   std::uint32_t farthest = start;
   for (std::uint32_t t = 0; t < distance.size(); ++t) {
-    if (distance[t] < kFar && distance[t] > distance[farthest]) farthest = t;
+    if (distance[t] < kUnreached && distance[t] > distance[farthest]) farthest = t;
   }
   // All triangles lie in one point: any other one will do.
   if (farthest == start) {
     for (std::uint32_t t = 0; t < distance.size(); ++t) {
-      if (t != start && distance[t] < kFar) return t;
+      if (t != start && distance[t] < kUnreached) return t;
     }
   }
   return farthest;
@@ -107,7 +108,7 @@ std::array<std::uint32_t, 2> far_pair(const Topology& topology, const LocalChart
 
 std::vector<std::uint8_t> divide(const Topology& topology, const LocalChart& chart,
                                  std::span<const std::uint32_t> seeds) {
-  return Regions(topology, chart, seeds).take_owners();
+  return GrownRegions(topology, chart, seeds).take_owners();
 }
 
 }  // namespace atlas

@@ -97,21 +97,25 @@ class Walker {
   template <class Joint>
   void walk(std::uint32_t root, std::size_t most, std::vector<std::uint32_t>& order,
             const Joint& joint) {
+    if (last_seen_ > kNoIndex - seen_.size()) {
+      std::fill(seen_.begin(), seen_.end(), 0u);
+      last_seen_ = 0;
+    }
     const std::size_t start = order.size();
     const auto enter = [&](std::uint32_t h) {
       seen_[h / 3] = ++last_seen_;
       order.push_back(h);
     };
-    const std::uint32_t before = last_seen_;
+    const std::uint32_t earlier = last_seen_;
     enter(root);
     for (std::size_t at = start; at < order.size(); ++at) {
       std::uint32_t h = order[at];
       for (int k = at == start ? 0 : 1; k < 3; ++k) {
         if (k > 0) h = next_half_edge(h);
         const std::uint32_t o = opposite_[h];
-        if (o != kNoIndex && seen_[o / 3] <= before && order.size() - start < most) enter(o);
-        const bool here = o != kNoIndex && seen_[o / 3] > before;
-        joint(h, here ? seen_[o / 3] - before : kNoIndex);
+        if (o != kNoIndex && seen_[o / 3] <= earlier && order.size() - start < most) enter(o);
+        const bool here = o != kNoIndex && seen_[o / 3] > earlier;
+        joint(h, here ? seen_[o / 3] - earlier : kNoIndex);
       }
     }
   }

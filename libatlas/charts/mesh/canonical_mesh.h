@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "libatlas/charts/charts.h"
@@ -21,6 +22,10 @@ struct CanonicalMesh {
   std::vector<float> density;
   std::vector<std::uint8_t> seams;
 
+  // Without positions, which are those of the places.
+  MeshView view(std::span<const Vec2f> texcoords) const {
+    return {{}, indices, materials, density, texcoords, texcoord_indices, seams};
+  }
   std::uint32_t input_triangle(std::uint32_t t) const { return first_corner[t] / 3; }
   std::uint32_t input_corner(std::uint32_t corner) const {
     const std::uint32_t first = first_corner[corner / 3];

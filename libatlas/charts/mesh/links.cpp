@@ -12,7 +12,7 @@
 namespace atlas {
 namespace {
 
-glm::dvec3 point(const Topology& topology, std::uint32_t corner) {
+glm::dvec3 corner_point(const Topology& topology, std::uint32_t corner) {
   return to_dvec(topology.points[topology.corner_vertex[corner]]);
 }
 
@@ -191,8 +191,9 @@ class Linker {
   glm::dvec3 wing(std::uint32_t h) const {
     const std::uint32_t low = from(h) < to(h) ? h : next_half_edge(h);
     const std::uint32_t high = from(h) < to(h) ? next_half_edge(h) : h;
-    const glm::dvec3 a = point(topology_, low), edge = glm::normalize(point(topology_, high) - a);
-    const glm::dvec3 d = point(topology_, previous_half_edge(h)) - a;
+    const glm::dvec3 a = corner_point(topology_, low),
+                     edge = glm::normalize(corner_point(topology_, high) - a);
+    const glm::dvec3 d = corner_point(topology_, previous_half_edge(h)) - a;
     return glm::normalize(d - glm::dot(d, edge) * edge);
   }
 
@@ -231,7 +232,7 @@ class Linker {
   }
 
   double length(std::uint32_t h) const {
-    return glm::distance(point(topology_, h), point(topology_, next_half_edge(h))) /
+    return glm::distance(corner_point(topology_, h), corner_point(topology_, next_half_edge(h))) /
            topology_.scale;
   }
 

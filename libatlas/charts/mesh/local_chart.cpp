@@ -8,7 +8,7 @@ namespace atlas {
 namespace {
 
 // The solver of a chart of this size no longer fits the caches.
-constexpr std::uint32_t kManyTriangles = 30000;
+constexpr std::uint32_t kTooManyForCaches = 30000;
 // Data is prefetched this many triangles ahead; waiting for memory would otherwise take most of the
 // time.
 constexpr std::uint32_t kAhead = 16;
@@ -24,7 +24,7 @@ void LocalChart::build(const Topology& topology, Partition& partition,
   find_components();
   number_vertices(topology);
   find_loops();
-  if (n >= kManyTriangles) {  // frees memory for the solver
+  if (n >= kTooManyForCaches) {  // frees memory for the solver
     std::vector<std::uint32_t>().swap(queue_);
     std::vector<std::uint8_t>().swap(seen_);
     if (component_count == 1) std::vector<std::uint32_t>().swap(component);
@@ -64,8 +64,8 @@ void LocalChart::number_vertices(const Topology& topology) {
   density.clear();
   const auto corner = [&](std::uint32_t h) -> std::uint32_t& { return corners[h / 3][h % 3]; };
   for (std::uint32_t i = 0; i < 3 * n; ++i) {
-    const std::uint32_t start = n < kManyTriangles ? i : 3 * queue_[i / 3] + i % 3;
-    if (n >= kManyTriangles && i / 3 + kAhead < n) {
+    const std::uint32_t start = n < kTooManyForCaches ? i : 3 * queue_[i / 3] + i % 3;
+    if (n >= kTooManyForCaches && i / 3 + kAhead < n) {
       const std::uint32_t later = queue_[i / 3 + kAhead];
       __builtin_prefetch(corners.data() + later, 1);
       __builtin_prefetch(opposite.data() + 3 * std::size_t{later});

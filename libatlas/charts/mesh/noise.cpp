@@ -16,7 +16,7 @@ namespace {
 // degrees at most edges. Rough meshes of few triangles, with noise or not, also come out in fewer
 // charts when they count as noisy.
 constexpr double kFoldCosine = 0.988, kFoldShare = 0.6;
-constexpr std::size_t kManyTriangles = 800;
+constexpr std::size_t kManyNoisyTriangles = 800;
 constexpr int kRounds = 4;
 
 std::vector<std::uint8_t> noisy_pieces(const Topology& topology) {
@@ -35,7 +35,7 @@ std::vector<std::uint8_t> noisy_pieces(const Topology& topology) {
   std::vector<std::uint8_t> noisy(counts.size());
   for (std::size_t i = 0; i < counts.size(); ++i) {
     noisy[i] = counts[i].folds > kFoldShare * counts[i].edges &&
-               2 * std::size_t{counts[i].edges} > 3 * kManyTriangles / 2;
+               2 * std::size_t{counts[i].edges} > 3 * kManyNoisyTriangles / 2;
   }
   return noisy;
 }
@@ -67,7 +67,7 @@ double angle(const Topology& topology, std::uint32_t half_edge) {
 }  // namespace
 
 void calm_noise(Topology& topology, const Context& context) {
-  if (topology.triangle_count() < kManyTriangles) return;
+  if (topology.triangle_count() < kManyNoisyTriangles) return;
   const std::vector<std::uint8_t> noisy = noisy_pieces(topology);
   if (std::find(noisy.begin(), noisy.end(), 1) == noisy.end()) return;
   std::vector<Vec3f> now = topology.normals, next = now;

@@ -25,7 +25,7 @@ constexpr double kDegenerateShare = 1e-12;
 
 // Data at random places in memory is prefetched this many triangles ahead. The orders of meshes
 // differ, and waiting would take most of the time.
-constexpr std::size_t kAhead = 20;
+constexpr std::size_t kCornersAhead = 20;
 
 Status check_input(const MeshView& mesh) {
   const std::size_t n = mesh.indices.size();
@@ -285,8 +285,8 @@ void count_nonmanifold_vertices(Topology& topology) {
     valence[topology.corner_vertex[h]] += !topology.degenerate(h / 3);
   }
   for (std::uint32_t start = 0; start < corners; ++start) {
-    if (start + 3 * kAhead < corners) {
-      const std::uint32_t later = start + 3 * kAhead, across = topology.opposite[later];
+    if (start + 3 * kCornersAhead < corners) {
+      const std::uint32_t later = start + 3 * kCornersAhead, across = topology.opposite[later];
       __builtin_prefetch(valence.data() + topology.corner_vertex[later], 1);
       if (across != kNoIndex) __builtin_prefetch(topology.opposite.data() + across);
     }

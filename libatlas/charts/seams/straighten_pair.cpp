@@ -12,7 +12,7 @@
 namespace atlas {
 namespace {
 
-constexpr double kSteps = 256;        // the length of a mean edge in the cut's integers
+constexpr double kCutSteps = 256;     // the length of a mean edge in the cut's integers
 constexpr double kLongest = 1 << 16;  // the most steps of an edge, so that sums fit 32 bits
 
 // Triangles at a hub, where more than kHubTriangles meet, stay in their chart. A band of one ring
@@ -186,7 +186,7 @@ class PairStraightener {
   bool build_cut() {
     double mean = 0;
     for (std::uint32_t i = first_; i < last_; ++i) mean += edge_length(topology_, 3 * band_[i]);
-    const double unit = mean / (last_ - first_) / kSteps;
+    const double unit = mean / (last_ - first_) / kCutSteps;
     if (!(unit > 0)) return false;
     cut_.reset(last_ - first_);
     const double stiffness = std::max(bands_[charts_[0]].stiffness, bands_[charts_[1]].stiffness);

@@ -18,6 +18,10 @@
 
 namespace atlas {
 
+// Values of a sampler, which are OpenGL's.
+inline constexpr int kLinear = 9729, kLinearMipmapLinear = 9987, kClampToEdge = 33071,
+                     kMirroredRepeat = 33648;
+
 // Says on which page of the world's lightmap the triangles of a primitive are, as its
 // extras.lightmap, if there are several.
 void name_lightmap_page(const World& world, std::uint32_t page, nlohmann::json& primitive);

@@ -23,9 +23,6 @@ namespace fs = std::filesystem;
 using nlohmann::json;
 namespace {
 
-constexpr int kLinear = 9729, kLinearMipmapLinear = 9987, kClampToEdge = 33071,
-              kMirroredRepeat = 33648;
-
 // Returns whether the material's emission is written. If a texture modulates it, it is left out:
 // the texture is not read, and without it the whole surface would glow.
 bool keeps_emission(const Material& material) {

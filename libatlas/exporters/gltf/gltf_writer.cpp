@@ -23,8 +23,6 @@ namespace fs = std::filesystem;
 using nlohmann::json;
 namespace {
 
-constexpr int kLinear = 9729, kLinearMipmapLinear = 9987, kClampToEdge = 33071;
-
 class PagesWriter {
  public:
   PagesWriter(const World& world, GltfDocument& document) : world_(world), document_(document) {

@@ -22,17 +22,34 @@ namespace fs = std::filesystem;
 using nlohmann::json;
 namespace {
 
-constexpr std::string_view kTexcoord = "TEXCOORD_";
+constexpr std::string_view kTexcoord = "TEXCOORD_", kColours = "COLOR_", kFirstColours = "COLOR_0";
 
-// Returns the numbers of the uv sets among the attributes.
-std::set<std::int64_t> sets_of(const std::map<std::string, int>& attributes) {
+// Returns the numbers of the sets of uvs, or of what `kind` says, among the attributes.
+std::set<std::int64_t> sets_of(const std::map<std::string, int>& attributes,
+                               std::string_view kind = kTexcoord) {
   std::set<std::int64_t> sets;
   for (const auto& [name, accessor] : attributes) {
-    const std::string number = name.starts_with(kTexcoord) ? name.substr(kTexcoord.size()) : "";
+    const std::string number = name.starts_with(kind) ? name.substr(kind.size()) : "";
     const bool digits = number.find_first_not_of("0123456789") == std::string::npos;
     if (!number.empty() && number.size() <= 9 && digits) sets.insert(std::stoi(number));
   }
   return sets;
+}
+
+// Returns attributes without one of them. The format allows no set of colours without those before
+// it, so those behind a COLOR_0 that is left out move up.
+std::map<std::string, int> without_light(const std::map<std::string, int>& attributes,
+                                         const std::string& light) {
+  std::map<std::string, int> rest = attributes;
+  rest.erase(light);
+  if (light != kFirstColours) return rest;
+  for (const std::int64_t set : sets_of(attributes, kColours)) {
+    auto colours = rest.extract(fmt::format("{}{}", kColours, set));
+    if (colours.empty()) continue;
+    colours.key() = fmt::format("{}{}", kColours, set - 1);
+    rest.insert(std::move(colours));
+  }
+  return rest;
 }
 
 // Returns the uv sets that any primitive shown has.
@@ -266,9 +283,8 @@ class FileWriter {
     for (const char* key : {"mode", "attributes", "indices", "targets", "material"})
       primitive.erase(key);
     const std::string light = light_on_map(from);
-    const auto kept = [&light](std::map<std::string, int> attributes) {
-      attributes.erase(light);
-      return attributes;
+    const auto kept = [&light](const std::map<std::string, int>& attributes) {
+      return without_light(attributes, light);
     };
     primitive["attributes"] = attributes(kept(from.attributes), vertices);
     for (const auto& target : from.targets)
@@ -295,9 +311,9 @@ class FileWriter {
     const auto material = static_cast<std::size_t>(from.material);
     const bool unlit = from.material >= 0 && material < materials.size() &&
                        materials[material].extensions.contains("KHR_materials_unlit");
-    if (unlit || !from.attributes.contains("COLOR_0")) return "";
+    if (unlit || !from.attributes.contains(std::string(kFirstColours))) return "";
     left_out_colours_ = true;
-    return "COLOR_0";
+    return std::string(kFirstColours);
   }
 
   json attributes(const std::map<std::string, int>& from,

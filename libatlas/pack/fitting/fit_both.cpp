@@ -12,7 +12,7 @@ namespace atlas {
 namespace {
 
 // If boxes or pages are filled to a larger share than this, outlines have nothing to win.
-constexpr double kFull = 0.88;
+constexpr double kFullBoxes = 0.88;
 
 // What both ways of fitting are compared by.
 class Comparison {
@@ -58,11 +58,11 @@ class Comparison {
     constexpr std::size_t kMany = 1000;
     const bool large = boxed.pages.size() >= options_.pages || boxed.scale >= options_.max_scale;
     const bool given = options_.power_of_two || options_.free_aspect;
-    if (boxed.filled > kFull && large && given) return false;
+    if (boxed.filled > kFullBoxes && large && given) return false;
     if (items_.size() < kMany) return true;
     double box_area = 0;
     for (const FitItem& item : items_) box_area += item.width * item.height;
-    return whole_ < kFull * box_area;
+    return whole_ < kFullBoxes * box_area;
   }
 
   // Returns whether fit a is better than b. A larger scale is better, and for the same scale,

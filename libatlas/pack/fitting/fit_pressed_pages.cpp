@@ -25,7 +25,7 @@ constexpr std::size_t kExchanges = 2, kBestExchanges = 12;
 constexpr std::size_t kMostCharts = 64;
 // Maximum number of pages. Each takes about 0.4 s, which two hundred pages of a small mesh would
 // not be worth.
-constexpr std::size_t kMostPages = 24;
+constexpr std::size_t kMostPressedPages = 24;
 // Further draws and exchanges are expected to enlarge the scale by at most this factor. If the
 // balanced scale after the first draws, times this factor, is below the scale of the fit, the fit's
 // pages are kept. Pages of 135 triangles, at 0.96 to 0.97 of the fit's scale, were drawn three
@@ -307,7 +307,7 @@ class PagePress {
 
 std::optional<FitResult> press_pages(FitResult& fitted, const FitCharts& charts,
                                      const FitSearchOptions& options, const Context& context) {
-  if (!options.press_pages || options.pages < 2 || options.pages > kMostPages ||
+  if (!options.press_pages || options.pages < 2 || options.pages > kMostPressedPages ||
       fitted.pages.size() < options.pages || options.free_aspect ||
       fitted.scale >= options.max_scale || options.preset == PackPreset::fast ||
       below_minimum_side(charts.items, options, fitted.scale)) {

@@ -17,7 +17,7 @@ namespace {
 constexpr std::size_t kFewest = 24, kMostGroups = 16;
 // The directions that are tried in half a turn, and the number of edges of the hull besides.
 constexpr int kDirections = 24;
-constexpr std::size_t kEdges = 6;
+constexpr std::size_t kRowEdges = 6;
 // Cells along a chart's largest extent while a plan is made.
 constexpr double kCells = 48;
 
@@ -128,7 +128,7 @@ std::vector<double> angles_for(const ChartOutline& outline, double& extent) {
   std::stable_sort(edges.begin(), edges.end(), [](const Vec2d& a, const Vec2d& b) {
     return portable::hypot(a.x, a.y) > portable::hypot(b.x, b.y);
   });
-  edges.resize(std::min(edges.size(), kEdges));
+  edges.resize(std::min(edges.size(), kRowEdges));
   for (const Vec2d& e : edges) {
     const double angle = -portable::atan2(e.y, e.x);
     angles.push_back(angle < 0 ? angle + std::numbers::pi : angle);

@@ -21,20 +21,21 @@ namespace {
 // it gains a tenth.
 constexpr int kCellsASide = 512;
 constexpr std::size_t kStarts = 16, kSlidStarts = 4;
-// Up to kFewCharts charts get kLowStarts more starts, whose pages are lower. A few charts may only
-// nest in one row: four U shapes that interlock in pairs fill 0.72 of a page of 2 : 1, and 0.52 of
-// pages that are higher.
-constexpr std::size_t kFewCharts = 16, kLowStarts = 4;
-constexpr std::uint64_t kLayouts = 20;  // layouts of one start
+// Up to kFewStraightCharts charts get kLowStarts more starts, whose pages are lower. A few charts
+// may only nest in one row: four U shapes that interlock in pairs fill 0.72 of a page of 2 : 1, and
+// 0.52 of pages that are higher.
+constexpr std::size_t kFewStraightCharts = 16, kLowStarts = 4;
+constexpr std::uint64_t kStraightLayouts = 20;  // layouts of one start
 // Words that all starts of a round examine together, 2 ns each.
-constexpr std::uint64_t kSearchWork = 320'000'000;
+constexpr std::uint64_t kStraightWork = 320'000'000;
 // Words for each of the kSlidStarts fullest starts, which are made lower by letting charts overlap
 // for a while.
-constexpr std::uint64_t kOverlapWork = 10'000'000;
-// Maximum number of doublings: `best` doubles kLayouts, kSearchWork and kOverlapWork each round.
-constexpr std::uint32_t kMostDoublings = 4;
-constexpr int kSlides = 2;  // down and left; a third slide gains nothing
-constexpr std::uint32_t kDirections = 4;
+constexpr std::uint64_t kStraightOverlapWork = 10'000'000;
+// Maximum number of doublings: `best` doubles kStraightLayouts, kStraightWork and
+// kStraightOverlapWork each round.
+constexpr std::uint32_t kMostStraightDoublings = 4;
+constexpr int kStraightSlides = 2;  // down and left; a third slide gains nothing
+constexpr std::uint32_t kQuarterTurns = 4;
 
 // A layout on cells. At the same scale, the masks on cells cover the exact masks.
 struct Start {
@@ -91,7 +92,7 @@ class Slider {
       const std::uint32_t direction = start_.places[m.chart].direction;
       const Vec2d origin = pieces_[m.chart].origins[direction];
       p.placed = true;
-      p.angle = 2 * std::numbers::pi * direction / kDirections;
+      p.angle = 2 * std::numbers::pi * direction / kQuarterTurns;
       p.box = {m.at.x * unit_, m.at.y * unit_, m.mask->width * unit_, m.mask->height * unit_};
       p.offset = {p.box.x + origin.x, p.box.y + origin.y};
       page.page.width = std::max(page.page.width, p.box.right());
@@ -172,27 +173,27 @@ class StraightPage {
   // nearly as long as the page at this scale, or longer, they lie along the page, and the scale is
   // one at which they fit.
   double scale_of(std::size_t k, double shift) const {
-    constexpr double kExpectedFill = 0.74, kLowest = 0.6, kFewLowest = 0.4, kLong = 0.8;
+    constexpr double kStraightFill = 0.74, kLowest = 0.6, kFewLowest = 0.4, kNearlyAsLong = 0.8;
     const bool low = k >= kStarts;
     const double share =
         low ? double(k + 1 - kStarts) / double(kLowStarts) : double(k) / double(kStarts - 1);
     const double at = std::clamp(share + shift, 0.0, 1.0);
     const double side = options_.page_size;
     const double height = low ? kLowest - (kLowest - kFewLowest) * at : 1 - (1 - kLowest) * at;
-    const double scale = std::sqrt(kExpectedFill * side * side * height / area_);
+    const double scale = std::sqrt(kStraightFill * side * side * height / area_);
     const double most =
         (side - 2 * (options_.padding + options_.alignment)) / std::max(longest_, 1e-300);
-    return scale < kLong * most ? scale : most * (1 - (1 - kLong) * at);
+    return scale < kNearlyAsLong * most ? scale : most * (1 - (1 - kNearlyAsLong) * at);
   }
 
   std::size_t start_count() const {
-    return kStarts + (outlines_.size() <= kFewCharts ? kLowStarts : 0);
+    return kStarts + (outlines_.size() <= kFewStraightCharts ? kLowStarts : 0);
   }
 
   // Returns the number of layouts per start. It doubles each round, but does not exceed what
   // remains of the effort; otherwise the last round would take as long as all before it.
   std::uint64_t layouts_of_start(std::uint32_t round, std::uint64_t done) const {
-    const std::uint64_t wanted = kLayouts << std::min(round, kMostDoublings);
+    const std::uint64_t wanted = kStraightLayouts << std::min(round, kMostStraightDoublings);
     if (options_.preset != PackPreset::best || options_.effort == 0) return wanted;
     const std::uint64_t left = options_.effort > done ? options_.effort - done : 0;
     return std::clamp<std::uint64_t>((left + start_count() - 1) / start_count(), 1, wanted);
@@ -215,7 +216,7 @@ class StraightPage {
     search.width = options_.page_size / cell_;
     search.seed = random.next();
     search.layouts = layouts;
-    search.work = kSearchWork / kStarts << std::min(round, kMostDoublings);
+    search.work = kStraightWork / kStarts << std::min(round, kMostStraightDoublings);
     NestSearchResult found = search_nest(pieces, plan_by_size(pieces), search, context_);
     start.layouts = found.layouts;
     start.work = found.work;
@@ -251,7 +252,7 @@ class StraightPage {
         nest.used_height = s.height;
         OverlapSearchOptions overlap;
         overlap.width = options_.page_size / cell_;
-        overlap.work = kOverlapWork << std::min(round, kMostDoublings);
+        overlap.work = kStraightOverlapWork << std::min(round, kMostStraightDoublings);
         overlap.seed = s.seed;
         s.work = search_overlaps(pieces, overlap, context_, nest);
         take(std::move(nest), pieces, s);
@@ -271,7 +272,7 @@ class StraightPage {
     pieces.factor = scale;
     pieces.padding = options_.padding;
     pieces.cell = cell;
-    pieces.directions = kDirections;
+    pieces.directions = kQuarterTurns;
     if (cell == options_.alignment) return make_pieces(outlines_, pieces, context_);
     std::vector<ChartOutline> thin;
     for (const ChartOutline& o : outlines_) thin.push_back(thinned(o, 0.125 * cell / scale));
@@ -286,7 +287,7 @@ class StraightPage {
       if (context_.cancelled()) return;  // pieces may not have been rasterised
       Slider slider(std::move(pieces), s, options_, cell_);
       if (!slider.put_down()) continue;
-      for (int slide = 0; slide < kSlides; ++slide) {
+      for (int slide = 0; slide < kStraightSlides; ++slide) {
         slider.slide_to({0, -1});
         slider.slide_to({-1, 0});
       }

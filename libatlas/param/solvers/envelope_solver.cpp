@@ -10,14 +10,14 @@
 namespace atlas::param {
 namespace {
 
-constexpr std::size_t side = EnvelopeBlocks::side, block_size = EnvelopeBlocks::size;
+constexpr std::size_t block_side = EnvelopeBlocks::side, block_size = EnvelopeBlocks::size;
 
 }  // namespace
 
 // Returns where entry (i, j) of the reordered matrix is stored, j <= i.
 inline std::size_t EnvelopeSolver::place(std::size_t i, std::size_t j) const {
-  return block_size * (row_[i / side] + (j / side - first_[i / side])) + side * (j % side) +
-         i % side;
+  return block_size * (row_[i / block_side] + (j / block_side - first_[i / block_side])) +
+         block_side * (j % block_side) + i % block_side;
 }
 
 // Builds the graph of the elements' vertices. Neighbours are in the order in which elements list
@@ -82,19 +82,19 @@ void EnvelopeSolver::order(const Graph& graph) {
 }
 
 void EnvelopeSolver::find_envelope(const Graph& graph) {
-  const std::size_t n = graph.rows(), blocks = (n + side - 1) / side;
+  const std::size_t n = graph.rows(), blocks = (n + block_side - 1) / block_side;
   first_.resize(blocks);
   row_.resize(blocks + 1);
   row_[0] = 0;
   for (std::size_t b = 0; b < blocks; ++b) {
-    std::uint32_t first = static_cast<std::uint32_t>(side * b);
-    for (std::size_t i = side * b; i < std::min(side * (b + 1), n); ++i) {
+    std::uint32_t first = static_cast<std::uint32_t>(block_side * b);
+    for (std::size_t i = block_side * b; i < std::min(block_side * (b + 1), n); ++i) {
       const std::uint32_t v = order_[i];
       for (std::uint32_t k = graph.first[v]; k < graph.first[v + 1]; ++k) {
         first = std::min(first, position_[graph.column[k]]);
       }
     }
-    first_[b] = first / side;
+    first_[b] = first / block_side;
     row_[b + 1] = row_[b] + (b - first_[b] + 1);
   }
 }
@@ -171,21 +171,22 @@ void EnvelopeSolver::factorize(const Elements& elements) {
 // Factorizes the filled matrix, whose diagonal is given, one per vertex.
 void EnvelopeSolver::eliminate(std::span<const double> diagonal) {
   const std::size_t blocks = first_.size();
-  inverse_pivot_.assign(side * blocks, 0);
+  inverse_pivot_.assign(block_side * blocks, 0);
   const EnvelopeBlocks factor{first_.data(), row_.data(), factor_.data(), inverse_pivot_.data()};
   for (std::size_t b = 0; b < blocks; ++b) {
     eliminate_row(factor, b);
     double* own = factor.at(b, b);
-    for (std::size_t j = 0; j < std::min(side, order_.size() - side * b); ++j) {
-      const std::uint32_t v = order_[side * b + j];
-      const double pivot = own[side * j + j];
+    for (std::size_t j = 0; j < std::min(block_side, order_.size() - block_side * b); ++j) {
+      const std::uint32_t v = order_[block_side * b + j];
+      const double pivot = own[block_side * j + j];
       if (held_[v] == 0 && pivot > 1e-15 * diagonal[v]) {
-        inverse_pivot_[side * b + j] = 1 / std::sqrt(pivot);
+        inverse_pivot_[block_side * b + j] = 1 / std::sqrt(pivot);
       }
-      for (std::size_t r = j + 1; r < side; ++r) own[side * j + r] *= inverse_pivot_[side * b + j];
-      for (std::size_t k = j + 1; k < side; ++k) {
-        for (std::size_t r = k; r < side; ++r) {
-          own[side * k + r] -= own[side * j + r] * own[side * j + k];
+      for (std::size_t r = j + 1; r < block_side; ++r)
+        own[block_side * j + r] *= inverse_pivot_[block_side * b + j];
+      for (std::size_t k = j + 1; k < block_side; ++k) {
+        for (std::size_t r = k; r < block_side; ++r) {
+          own[block_side * k + r] -= own[block_side * j + r] * own[block_side * j + k];
         }
       }
     }
@@ -194,32 +195,33 @@ void EnvelopeSolver::eliminate(std::span<const double> diagonal) {
 
 void EnvelopeSolver::solve(std::span<const glm::dvec2> load, std::span<glm::dvec2> x) {
   const std::size_t n = order_.size(), blocks = first_.size();
-  work_.assign(side * blocks, glm::dvec2(0));
+  work_.assign(block_side * blocks, glm::dvec2(0));
   glm::dvec2* work = work_.data();
   const EnvelopeBlocks factor{first_.data(), row_.data(), factor_.data(), inverse_pivot_.data()};
   for (std::size_t i = 0; i < n; ++i) work[i] = load[order_[i]];
   for (std::size_t b = 0; b < blocks; ++b) {
-    const std::size_t begin = side * first_[b];
-    alignas(16) std::array<glm::dvec2, side> sum;
-    for (std::size_t r = 0; r < side; ++r) sum[r] = work[side * b + r];
-    subtract_columns(factor.at(b, first_[b]), work + begin, side * b - begin, sum.data());
+    const std::size_t begin = block_side * first_[b];
+    alignas(16) std::array<glm::dvec2, block_side> sum;
+    for (std::size_t r = 0; r < block_side; ++r) sum[r] = work[block_side * b + r];
+    subtract_columns(factor.at(b, first_[b]), work + begin, block_side * b - begin, sum.data());
     const double* column = factor.at(b, b);
-    for (std::size_t j = 0; j < side; ++j, column += side) {
-      sum[j] *= inverse_pivot_[side * b + j];
-      for (std::size_t r = j + 1; r < side; ++r) sum[r] -= column[r] * sum[j];
-      work[side * b + j] = sum[j];
+    for (std::size_t j = 0; j < block_side; ++j, column += block_side) {
+      sum[j] *= inverse_pivot_[block_side * b + j];
+      for (std::size_t r = j + 1; r < block_side; ++r) sum[r] -= column[r] * sum[j];
+      work[block_side * b + j] = sum[j];
     }
   }
   for (std::size_t b = blocks; b-- > 0;) {
-    const std::size_t begin = side * first_[b];
-    alignas(16) std::array<glm::dvec2, side> known;
+    const std::size_t begin = block_side * first_[b];
+    alignas(16) std::array<glm::dvec2, block_side> known;
     const double* own = factor.at(b, b);
-    for (std::size_t j = side; j-- > 0;) {
-      known[j] = work[side * b + j];
-      for (std::size_t r = j + 1; r < side; ++r) known[j] -= own[side * j + r] * known[r];
-      work[side * b + j] = known[j] *= inverse_pivot_[side * b + j];
+    for (std::size_t j = block_side; j-- > 0;) {
+      known[j] = work[block_side * b + j];
+      for (std::size_t r = j + 1; r < block_side; ++r)
+        known[j] -= own[block_side * j + r] * known[r];
+      work[block_side * b + j] = known[j] *= inverse_pivot_[block_side * b + j];
     }
-    subtract_rows(factor.at(b, first_[b]), known.data(), side * b - begin, work + begin);
+    subtract_rows(factor.at(b, first_[b]), known.data(), block_side * b - begin, work + begin);
   }
   for (std::size_t i = 0; i < n; ++i) x[order_[i]] = work[i];
 }

@@ -21,11 +21,11 @@ struct Pairs {
   using type __attribute__((vector_size(2 * sizeof(Real)), may_alias)) = Real;
 };
 template <class Real>
-using Pair = typename Pairs<Real>::type;
+using PairOf = typename Pairs<Real>::type;
 
 template <class Real>
-Pair<Real>* pairs(std::vector<glm::vec<2, Real>>& v) {
-  return reinterpret_cast<Pair<Real>*>(v.data());
+PairOf<Real>* pairs(std::vector<glm::vec<2, Real>>& v) {
+  return reinterpret_cast<PairOf<Real>*>(v.data());
 }
 
 glm::dvec2 in_double(Vec2d v) {
@@ -133,15 +133,15 @@ void MultigridLevels<Real>::smooth_down(std::size_t depth) {
   const auto* entries = level.matrix.lower.entries.data();
   const std::uint32_t* first = level.matrix.lower.first.data();
   const Real* inverse_diagonal = level.inverse_diagonal.data();
-  const Pair<Real>* load = pairs<Real>(level.load);
-  Pair<Real>*x = pairs<Real>(level.x), *rest = pairs<Real>(level.rest);
+  const PairOf<Real>* load = pairs<Real>(level.load);
+  PairOf<Real>*x = pairs<Real>(level.x), *rest = pairs<Real>(level.rest);
   for (std::uint32_t i = 0; i < n; ++i) {
-    Pair<Real> sum = load[i];
+    PairOf<Real> sum = load[i];
     for (std::uint32_t k = first[i]; k < first[i + 1]; ++k) {
       sum -= entries[k].value * x[entries[k].column];
     }
     x[i] = sum *= inverse_diagonal[i];
-    rest[i] = Pair<Real>{};
+    rest[i] = PairOf<Real>{};
     for (std::uint32_t k = first[i]; k < first[i + 1]; ++k) {
       rest[entries[k].column] -= entries[k].value * sum;
     }
@@ -155,11 +155,11 @@ void MultigridLevels<Real>::restrict_rest(std::size_t depth) {
   const auto n = static_cast<std::uint32_t>(level.matrix.rows());
   const auto* entries = level.prolongation.entries.data();
   const std::uint32_t* first = level.prolongation.first.data();
-  const Pair<Real>* rest = pairs<Real>(level.rest);
+  const PairOf<Real>* rest = pairs<Real>(level.rest);
   std::fill(levels_[depth + 1].load.begin(), levels_[depth + 1].load.end(), glm::vec<2, Real>(0));
-  Pair<Real>* load = pairs<Real>(levels_[depth + 1].load);
+  PairOf<Real>* load = pairs<Real>(levels_[depth + 1].load);
   for (std::uint32_t i = 0; i < n; ++i) {
-    const Pair<Real> own = rest[i];
+    const PairOf<Real> own = rest[i];
     for (std::uint32_t k = first[i]; k < first[i + 1]; ++k) {
       load[entries[k].column] += entries[k].value * own;
     }
@@ -176,10 +176,10 @@ void MultigridLevels<Real>::smooth_up(std::size_t depth) {
   const std::uint32_t *first = level.matrix.lower.first.data(),
                       *row_first = level.prolongation.first.data();
   const Real* inverse_diagonal = level.inverse_diagonal.data();
-  const Pair<Real>*load = pairs<Real>(level.load), *coarse_x = pairs<Real>(levels_[depth + 1].x);
-  Pair<Real>*x = pairs<Real>(level.x), *rest = pairs<Real>(level.rest);
+  const PairOf<Real>*load = pairs<Real>(level.load), *coarse_x = pairs<Real>(levels_[depth + 1].x);
+  PairOf<Real>*x = pairs<Real>(level.x), *rest = pairs<Real>(level.rest);
   for (std::uint32_t i = 0; i < n; ++i) {
-    Pair<Real> sum = x[i];
+    PairOf<Real> sum = x[i];
     for (std::uint32_t k = row_first[i]; k < row_first[i + 1]; ++k) {
       sum += rows[k].value * coarse_x[rows[k].column];
     }
@@ -188,7 +188,7 @@ void MultigridLevels<Real>::smooth_up(std::size_t depth) {
   }
   for (std::uint32_t i = n; i-- > 0;) {
     // The part below the diagonal is available at once; the part above is in `rest` by now.
-    Pair<Real> sum{};
+    PairOf<Real> sum{};
     for (std::uint32_t k = first[i]; k < first[i + 1]; ++k) {
       sum += entries[k].value * x[entries[k].column];
     }
@@ -217,16 +217,16 @@ double MultigridLevels<Real>::step_direction(Real beta) {
   const auto n = static_cast<std::uint32_t>(level.matrix.rows());
   const auto* entries = level.matrix.lower.entries.data();
   const std::uint32_t* first = level.matrix.lower.first.data();
-  const Pair<Real>* z = pairs<Real>(level.x);
-  Pair<Real>*direction = pairs<Real>(direction_), *product = pairs<Real>(level.rest);
+  const PairOf<Real>* z = pairs<Real>(level.x);
+  PairOf<Real>*direction = pairs<Real>(direction_), *product = pairs<Real>(level.rest);
   glm::dvec2 energy(0);
   for (std::uint32_t i = 0; i < n; ++i) {
-    const Pair<Real> own = z[i] + beta * direction[i];
+    const PairOf<Real> own = z[i] + beta * direction[i];
     direction[i] = own;
-    Pair<Real> sum{}, squares{};
+    PairOf<Real> sum{}, squares{};
     for (std::uint32_t k = first[i]; k < first[i + 1]; ++k) {
-      const Pair<Real> difference = direction[entries[k].column] - own;
-      const Pair<Real> flow = entries[k].value * difference;
+      const PairOf<Real> difference = direction[entries[k].column] - own;
+      const PairOf<Real> flow = entries[k].value * difference;
       sum += flow;
       squares -= flow * difference;
       product[entries[k].column] -= flow;

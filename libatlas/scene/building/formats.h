@@ -16,15 +16,16 @@ Status read_vrml(const std::filesystem::path& path, SceneBuilder& builder, const
 // Appends the materials of an MTL library and their textures.
 Status read_mtl(const std::filesystem::path& path, SceneBuilder& builder);
 
-// Replaces the builder's illumination with that of another file, which must have the same vertices.
-Status read_illumination(const std::filesystem::path& path, SceneBuilder& builder,
-                         const Context& context);
+// Replaces the builder's illumination with that of ReadOptions::illumination_file, which must have
+// the same vertices.
+Status read_illumination(const ReadOptions& options, SceneBuilder& builder, const Context& context);
 
 // Returns whether the extension (in any case) names one of the formats above.
 bool known_extension(const std::filesystem::path& path);
 
 // Calls the reader that the extension names. Errors: unsupported if there is none; bad_input for an
-// empty file or a directory; those of the reader.
+// empty file or a directory, or if a file must not be read (SceneBuilder::may_read); those of the
+// reader.
 Status read_by_extension(const std::filesystem::path& path, SceneBuilder& builder,
                          const Context& context);
 

@@ -57,8 +57,8 @@ struct PageWanted {
 // Reads a page. Checks first whether the file exists, because asking the decoder for it would load
 // a large library.
 Result<ImageF> read_page(const fs::path& path, const PageWanted& wanted, SceneBuilder& builder) {
-  std::error_code error;
-  if (!fs::is_regular_file(path, error))
+  if (!builder.may_read(path, builder.file)) return builder.refused;
+  if (!builder.named_files.is_file(path))
     return Status(ErrorCode::not_found, path.string() + ": there is no such file");
   builder.files.push_back(path);
   if (wanted.white == 0) return read_linear(path, builder);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <limits>
 #include <optional>
 #include <utility>
 
@@ -15,6 +16,10 @@ namespace atlas {
 namespace {
 
 constexpr std::size_t kMaxConcave = std::size_t{1} << 20;  // no useful surface has more
+
+// Limit on the tests whether a point lies in a triangle, for each corner, of some 10 ns each.
+// Outlines of surfaces need less than a hundred.
+constexpr std::uint64_t kMostTests = 2000;
 
 // Drops the coordinate along which the polygon's normal is largest, and keeps the polygon
 // counter-clockwise.
@@ -253,8 +258,9 @@ class PointGrid {
 // corners are tried again when no candidate is left.
 class EarClipper {
  public:
-  EarClipper(const std::vector<Vec2d>& points, std::vector<std::array<std::uint32_t, 3>>& triangles)
-      : points_(points), triangles_(triangles), size_(std::uint32_t(points.size())) {
+  EarClipper(const std::vector<Vec2d>& points, std::vector<std::array<std::uint32_t, 3>>& triangles,
+             std::uint64_t tests)
+      : points_(points), triangles_(triangles), size_(std::uint32_t(points.size())), tests_(tests) {
     for (std::uint32_t i = 0; i < size_; ++i) {
       before_.push_back((i + size_ - 1) % size_);
       after_.push_back((i + 1) % size_);
@@ -264,9 +270,11 @@ class EarClipper {
     index();
   }
 
-  void run() {
+  // Returns false, with unusable triangles, if that takes more tests of points than allowed.
+  bool run() {
     std::uint32_t start = 1;  // continuing after the last ear avoids long slivers at one corner
     while (size_ > 3) {
+      if (tests_ == 0) return false;
       std::uint32_t ear = find_ear(start);
       if (ear == kNoIndex && clipped_ && again_ > 0) {
         --again_;
@@ -279,13 +287,15 @@ class EarClipper {
     const std::uint32_t first =
         std::uint32_t(std::find(alive_.begin(), alive_.end(), true) - alive_.begin());
     triangles_.push_back({first, after_[first], after_[after_[first]]});
+    return true;
   }
 
  private:
   // Returns the first ear around the ring from `start` on, or kNoIndex.
   std::uint32_t find_ear(std::uint32_t start) {
     for (const auto& [from, to] : {std::pair(start, std::uint32_t(points_.size())), {0u, start}}) {
-      for (std::uint32_t i = next_candidate(from, to); i < to; i = next_candidate(i, to)) {
+      for (std::uint32_t i = next_candidate(from, to); i < to && tests_ > 0;
+           i = next_candidate(i, to)) {
         candidate_[i / 64] &= ~(std::uint64_t{1} << i % 64);
         if (is_ear(i)) return i;
       }
@@ -302,11 +312,13 @@ class EarClipper {
     return to;
   }
 
-  bool is_ear(std::uint32_t i) const {
+  bool is_ear(std::uint32_t i) {
     const Vec2d a = points_[before_[i]], b = points_[i], c = points_[after_[i]];
+    tests_ -= tests_ > 0;
     if (orientation(a, b, c) <= 0) return false;
     const auto blocks = [&](std::uint32_t k) {
       const Vec2d p = points_[k];
+      tests_ -= tests_ > 0;
       return alive_[k] && p != a && p != b && p != c && inside(a, b, c, p);
     };
     if (grid_) return !grid_->any({a, b, c}, blocks);
@@ -351,6 +363,7 @@ class EarClipper {
   const std::vector<Vec2d>& points_;
   std::vector<std::array<std::uint32_t, 3>>& triangles_;
   std::uint32_t size_, indexed_ = 0;
+  std::uint64_t tests_;  // of points that are left
   std::vector<std::uint32_t> before_, after_;
   std::vector<bool> alive_;
   std::vector<std::uint64_t> candidate_;  // 1 bit per corner: whether it may be an ear
@@ -362,7 +375,7 @@ class EarClipper {
 }  // namespace
 
 bool triangulate(std::span<const Vec3d> corners,
-                 std::vector<std::array<std::uint32_t, 3>>& triangles) {
+                 std::vector<std::array<std::uint32_t, 3>>& triangles, bool limited) {
   triangles.clear();
   const auto n = static_cast<std::uint32_t>(corners.size());
   if (n == 3) {
@@ -378,13 +391,22 @@ bool triangulate(std::span<const Vec3d> corners,
   if (!round || !fans_out(flat, height)) {
     if (round && Sweep(flat, height, triangles).run()) return true;
     triangles.clear();
-    if (n <= kMaxConcave) {
-      EarClipper(flat, triangles).run();
-      return true;
-    }
+    const std::uint64_t tests =
+        limited ? kMostTests * n : std::numeric_limits<std::uint64_t>::max();
+    if ((n <= kMaxConcave || !limited) && EarClipper(flat, triangles, tests).run()) return true;
+    triangles.clear();
   }
   for (std::uint32_t i = 1; i + 1 < n; ++i) triangles.push_back({0, i, i + 1});
   return round;
+}
+
+bool goes_round_and_round(std::span<const std::int64_t> vertices) {
+  constexpr std::size_t kFew = 64, kMostPasses = 6;
+  if (vertices.size() <= kFew) return false;
+  std::vector<std::int64_t> sorted(vertices.begin(), vertices.end());
+  std::sort(sorted.begin(), sorted.end());
+  const auto different = std::unique(sorted.begin(), sorted.end()) - sorted.begin();
+  return vertices.size() > kMostPasses * std::size_t(different);
 }
 
 }  // namespace atlas

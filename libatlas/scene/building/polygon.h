@@ -17,8 +17,15 @@ namespace atlas {
 // the projection along the largest component of the polygon's normal (Newell's normal). Degenerate
 // or self-intersecting outlines also give n - 2 triangles. Ears are found with exact predicates in
 // the projection, so a simple outline gives triangles of its own orientation there, however thin
-// they are. Returns false for a concave polygon of more than 2^20 corners, which is cut as a fan.
+// they are. Returns false for a concave polygon that is cut as a fan, since it has more than 2^20
+// corners, or ears are so rare in it that finding them would take more than some 20 µs a corner;
+// not if `limited` is false.
 bool triangulate(std::span<const Vec3d> corners,
-                 std::vector<std::array<std::uint32_t, 3>>& triangles);
+                 std::vector<std::array<std::uint32_t, 3>>& triangles, bool limited = true);
+
+// Returns whether a polygon names its vertices, which are given by their numbers, so often that it
+// cannot be the outline of an area. Such an outline may come back to a vertex where it is joined to
+// those of holes, but passes each of the at most 3 n edges between n vertices of a plane twice.
+bool goes_round_and_round(std::span<const std::int64_t> vertices);
 
 }  // namespace atlas

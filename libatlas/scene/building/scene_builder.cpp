@@ -38,6 +38,17 @@ std::vector<std::uint32_t> compact(std::vector<std::uint32_t>& ids, std::size_t 
 
 }  // namespace
 
+bool SceneBuilder::may_read(const std::filesystem::path& named, const std::string& place) {
+  if (named_files.allows(named)) return true;
+  if (refused.ok())
+    refused = {
+        ErrorCode::bad_input,
+        fmt::format("{}: names {}, which lies outside of the scene's folder (put it there, or "
+                    "leave out ReadOptions::confine)",
+                    place, named.string())};
+  return false;
+}
+
 void SceneBuilder::take_view(const Vec3d& position, const Vec3d& direction) {
   const double length = glm::length(to_glm(direction));
   const Vec3d p = position;
@@ -254,8 +265,7 @@ std::vector<std::filesystem::path> SceneBuilder::unread_files() const {
   std::set<std::filesystem::path> known(files.begin(), files.end());
   std::vector<std::filesystem::path> unread;
   for (const std::filesystem::path& path : other_files) {
-    std::error_code error;  // a path that cannot be examined does not exist
-    if (std::filesystem::exists(path, error) && known.insert(path).second) unread.push_back(path);
+    if (named_files.exists(path) && known.insert(path).second) unread.push_back(path);
   }
   return unread;
 }
@@ -268,14 +278,15 @@ std::vector<bool> SceneBuilder::textures_of_materials() const {
   return used;
 }
 
-void SceneBuilder::load_textures(Scene& scene, bool encoded, const Context& context) {
+Status SceneBuilder::load_textures(Scene& scene, bool encoded, const Context& context) {
   std::vector<std::int32_t> loaded(textures.size(), -1);
   const std::vector<bool> used = textures_of_materials();
   image_files.resize(textures.size());
   for (std::size_t i = 0; i < textures.size(); ++i) {
-    if (context.cancelled()) return;
+    if (context.cancelled()) return Status::cancelled();
     context.report("reading", kPlaced + (1 - kPlaced) * double(i) / double(textures.size()));
     RawTexture& raw = textures[i];
+    if (raw.bytes.empty() && !may_read(raw.path, raw.place)) return refused;
     note_file(raw);
     if (encoded && keep_encoded(i, scene)) {
       loaded[i] = static_cast<std::int32_t>(scene.textures.size()) - 1;
@@ -307,6 +318,7 @@ void SceneBuilder::load_textures(Scene& scene, bool encoded, const Context& cont
     scene.materials[i].texture = t < 0 ? -1 : loaded[t];
   }
   texture_numbers = std::move(loaded);
+  return {};
 }
 
 // Moves the materials into the scene. Their textures follow in load_textures().
@@ -352,6 +364,7 @@ Result<LoadedScene> SceneBuilder::finish(const ReadOptions& options, const Conte
         fmt::format("{}: no triangle to work on: {} (export the scene as a triangle mesh)", file,
                     why));
   }
+  colour_corners();
   sanitise_values();
   sanitise_opacity();
   if (options.srgb_colours && !linear_light) decode_colours();
@@ -369,7 +382,7 @@ Result<LoadedScene> SceneBuilder::finish(const ReadOptions& options, const Conte
   place_uv_aspects(loaded);
   context.report("reading", kPlaced);
   if (options.load_textures && (options.unlit_textures || !illumination.empty())) {
-    load_textures(scene, options.encoded_textures, context);
+    if (Status s = load_textures(scene, options.encoded_textures, context); !s.ok()) return s;
   }
   loaded.unread_files = unread_files();
   scene.indices = std::move(indices_);

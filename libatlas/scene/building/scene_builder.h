@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "libatlas/core/vec.h"
+#include "libatlas/scene/building/coloured_points.h"
 #include "libatlas/scene/building/polygon.h"
 #include "libatlas/scene/files/mtl_names.h"
 #include "libatlas/scene/reader.h"
@@ -75,6 +76,9 @@ class SceneBuilder {
   std::vector<float> vertex_opacity;  // empty or 1 per vertex; only filled if wants_rest is set
   std::vector<Vec3f> unlit_colours;   // Scene::unlit_colours, for the first vertices or all
   bool linear_light = false;          // whether the format says that the illumination is linear
+  // Colours of faces, for the first triangles or all; used if no vertex has a colour. Their corners
+  // get them, and vertices of faces that differ are divided by finish().
+  std::vector<std::optional<VertexColour>> triangle_colours;
   std::vector<Vec2f> texcoords;
   std::vector<Vec3f> normals;  // of any length; only filled if wants_normals is set
   std::vector<RawMaterial> materials;
@@ -91,7 +95,9 @@ class SceneBuilder {
   std::shared_ptr<const SceneLightmap> lightmap;  // Scene::lightmap
   ImageF light_page;  // if not empty, the only page of a lightmap whose uvs are `texcoords`
   std::shared_ptr<GltfSource> source;        // Scene::source; if set, all of `textures` are kept
-  NamedFiles named_files;                    // finds material libraries and their textures
+  NamedFiles named_files;                    // finds the files that the scene names
+  Status refused;                            // may_read() has refused a file
+  bool limits = true;                        // ReadOptions::limits
   LossCounts not_read;                       // Scene::not_read, without the materials' MTL lines
   std::vector<std::filesystem::path> files;  // LoadedScene::files
   // What the file names besides `files` and `textures`; part of LoadedScene::unread_files.
@@ -101,6 +107,7 @@ class SceneBuilder {
 
   // What the next faces belong to.
   std::uint32_t material = 0, object = 0;
+  std::optional<VertexColour> face_colour;
 
   // Checks that positions are finite floats; call once, after they are complete.
   template <class Place>
@@ -111,6 +118,10 @@ class SceneBuilder {
       defects.add(DefectKind::position_not_finite, [&] { return place_of_vertex(i); });
     }
   }
+
+  // Returns whether a file that the scene names may be read. If not, reading ends with `refused`,
+  // in which `place` says where the first such file is named.
+  bool may_read(const std::filesystem::path& named, const std::string& place);
 
   // Takes where a viewer is and where it looks, unless there is such a view already, or it is none
   // of finite numbers. The direction may have any length.
@@ -139,9 +150,10 @@ class SceneBuilder {
     if (!all_given(face.uvs, texcoords.size(), kTexcoordDefects, place)) face.uvs = {};
     if (!all_given(face.normals, normals.size(), kNormalDefects, place)) face.normals = {};
     if (vertices.size() == 3) return add_triangle(face, {0, 1, 2});
+    if (goes_round_and_round(vertices)) return drop(DefectKind::polygon_repeated, place);
     corners_.clear();
     for (const std::int64_t v : vertices) corners_.push_back(positions[v]);
-    if (!triangulate(corners_, triangles_)) {
+    if (!triangulate(corners_, triangles_, limits)) {
       defects.add(DefectKind::polygon_too_large, place);
     }
     for (const auto& t : triangles_) add_triangle(face, t);
@@ -194,6 +206,9 @@ class SceneBuilder {
       indices_.push_back(static_cast<std::uint32_t>(vertices[c]));
     triangle_material_.push_back(material);
     triangle_object_.push_back(object);
+    if (!face_colour) return;
+    triangle_colours.resize(triangle_count());
+    triangle_colours.back() = face_colour;
   }
 
   // Adds the indices of a triangle's attributes, `given` or none. The list stays empty until a
@@ -208,6 +223,7 @@ class SceneBuilder {
       list.push_back(given.empty() ? Scene::kNoTexcoord : static_cast<std::uint32_t>(given[c]));
   }
 
+  void colour_corners();
   void sanitise_values();
   void sanitise_opacity();
   void decode_colours();
@@ -220,7 +236,7 @@ class SceneBuilder {
   void place_materials(const ReadOptions& options, Scene& scene);
   void note_file(const RawTexture& raw);
   std::vector<std::filesystem::path> unread_files() const;
-  void load_textures(Scene& scene, bool encoded, const Context& context);
+  Status load_textures(Scene& scene, bool encoded, const Context& context);
   bool keep_encoded(std::size_t texture, Scene& scene);
   std::vector<bool> textures_of_materials() const;
   Result<TextureImage> load_texture(const RawTexture& raw) const;

@@ -110,7 +110,8 @@ Result<std::string> read_text_or_gzip(const fs::path& path, std::size_t most) {
   gzclose(file);
   if (text.size() >= most) {
     return Status(ErrorCode::unsupported,
-                  fmt::format("{}: holds {} MiB of text or more, unpacked (split the scene)",
+                  fmt::format("{}: holds {} MiB of text or more, unpacked (split the scene; "
+                              "ReadOptions::limits lifts the limit)",
                               path.string(), most >> 20));
   }
   if (error != Z_OK) {

@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <filesystem>
+#include <limits>
 #include <memory>
 #include <string>
 #include <string_view>
@@ -35,13 +36,11 @@ Status turn_into_lines(FileBytes& bytes, const std::filesystem::path& path);
 // Calls read_file_bytes(), then turn_into_lines().
 Result<FileBytes> read_text_bytes(const std::filesystem::path& path);
 
-inline constexpr std::size_t kMostText = std::size_t{1} << 33;
-
 // Reads a plain or gzipped text file. Returns its text without a byte order mark, with line ends as
 // above, followed by one newline. Errors: those of read_file_bytes(); bad_input for damaged gzip
 // data; unsupported if gzip data unpack to `most` bytes or more, since a small gzip file can hold
 // terabytes.
 Result<std::string> read_text_or_gzip(const std::filesystem::path& path,
-                                      std::size_t most = kMostText);
+                                      std::size_t most = std::numeric_limits<std::size_t>::max());
 
 }  // namespace atlas

@@ -20,11 +20,6 @@ fs::path path_in(const fs::path& folder, std::string_view name) {
   return folder / path;
 }
 
-bool is_file(const fs::path& path) {
-  std::error_code ignored;  // a path that cannot be examined is not a file
-  return fs::is_regular_file(path, ignored);
-}
-
 // Returns where the word that begins at `begin` ends.
 std::size_t word_end(std::string_view text, std::size_t begin) {
   return std::min(text.find_first_of(kBlanks, begin), text.size());
@@ -34,8 +29,34 @@ std::size_t next_word(std::string_view text, std::size_t end) {
   return std::min(text.find_first_not_of(kBlanks, end), text.size());
 }
 
+}  // namespace
+
+void NamedFiles::confine_to(const fs::path& folder) {
+  std::error_code error;  // nothing lies in a folder that cannot be examined
+  inside_ = fs::weakly_canonical(folder.empty() ? "." : folder, error);
+}
+
+bool NamedFiles::allows(const fs::path& path) const {
+  if (!inside_) return true;
+  std::error_code error;
+  const fs::path file = fs::weakly_canonical(fs::absolute(path, error), error);
+  if (error || inside_->empty()) return false;
+  return std::mismatch(inside_->begin(), inside_->end(), file.begin(), file.end()).first ==
+         inside_->end();
+}
+
+bool NamedFiles::is_file(const fs::path& path) const {
+  std::error_code ignored;  // a path that cannot be examined is not a file
+  return allows(path) && fs::is_regular_file(path, ignored);
+}
+
+bool NamedFiles::exists(const fs::path& path) const {
+  std::error_code ignored;  // a path that cannot be examined does not exist
+  return allows(path) && fs::exists(path, ignored);
+}
+
 // Returns the length of the longest run of words at the beginning that is a file, or 0.
-std::size_t longest_file(const fs::path& folder, std::string_view names) {
+std::size_t NamedFiles::longest_file(const fs::path& folder, std::string_view names) const {
   std::size_t longest = 0, end = word_end(names, 0);
   for (int words = 1; words <= kMostWords; ++words) {
     if (is_file(path_in(folder, names.substr(0, end)))) longest = end;
@@ -46,7 +67,7 @@ std::size_t longest_file(const fs::path& folder, std::string_view names) {
 }
 
 // Returns the length of a name at the beginning that is no file.
-std::size_t unknown_name(const fs::path& folder, std::string_view names) {
+std::size_t NamedFiles::unknown_name(const fs::path& folder, std::string_view names) const {
   std::size_t end = word_end(names, 0);
   for (int words = 1; words < kMostWords; ++words) {
     if (lower_extension(fs::path(names.substr(0, end))) == ".mtl") break;
@@ -58,8 +79,6 @@ std::size_t unknown_name(const fs::path& folder, std::string_view names) {
   }
   return end;
 }
-
-}  // namespace
 
 const NamedFiles::Listing& NamedFiles::listing(const fs::path& folder) {
   const auto [at, is_new] = listings_.try_emplace(folder);
@@ -85,9 +104,8 @@ fs::path NamedFiles::in_any_case(const fs::path& folder, const fs::path& name) {
 fs::path NamedFiles::file_in_any_case(const fs::path& folder, const fs::path& path) {
   if (path.is_absolute()) return {};
   fs::path at = folder;
-  std::error_code ignored;
   for (const fs::path& part : path) {
-    at = fs::exists(at / part, ignored) ? at / part : in_any_case(at, part);
+    at = exists(at / part) ? at / part : in_any_case(at, part);
     if (at.empty()) return {};
   }
   return is_file(at) ? at : fs::path();
@@ -95,8 +113,7 @@ fs::path NamedFiles::file_in_any_case(const fs::path& folder, const fs::path& pa
 
 fs::path NamedFiles::file(const fs::path& folder, std::string_view name) {
   const fs::path exact = path_in(folder, name), beside = folder / exact.filename();
-  std::error_code ignored;
-  if (fs::exists(exact, ignored)) return exact;
+  if (exists(exact)) return exact;
   if (is_file(beside)) return beside;
   // The file may come from a system that ignores case.
   for (const fs::path& path : {exact.lexically_relative(folder), exact.filename()}) {

@@ -8,8 +8,9 @@
 #include <algorithm>
 #include <cstring>
 #include <exception>
-#include <memory>
 #include <new>
+
+#include "libatlas/scene/gltf/draco_guard.h"
 
 namespace atlas {
 namespace {
@@ -28,9 +29,19 @@ draco::DecoderBuffer buffer_of(std::span<const unsigned char> bytes) {
   return buffer;
 }
 
+// Some exporters promise the counts that a mesh had before compression, which joins and divides
+// points.
+constexpr std::size_t kMostBroken = 4, kFewBroken = std::size_t{1} << 14;
+
+bool is_edgebreaker(std::span<const unsigned char> bytes) {
+  constexpr std::size_t kMethod = 8;  // after the magic word, the version and the kind of geometry
+  return bytes.size() > kMethod && bytes[kMethod] == draco::MESH_EDGEBREAKER_ENCODING;
+}
+
 // Reads the counts at the beginning of the data, since Draco allocates memory for any counts.
 // Returns what is wrong, or an empty text.
-std::string check_counts(std::span<const unsigned char> bytes) {
+std::string check_counts(const DracoBytes& data) {
+  const std::span<const unsigned char> bytes = data.bytes;
   constexpr char kMagic[] = {'D', 'R', 'A', 'C', 'O'};
   constexpr std::uint8_t kMesh = draco::TRIANGULAR_MESH;
   draco::DecoderBuffer buffer = buffer_of(bytes);
@@ -56,8 +67,14 @@ std::string check_counts(std::span<const unsigned char> bytes) {
     return "ends too early";
   for (std::uint32_t& count : counts)
     if (!draco::DecodeVarint(&count, &buffer)) return "ends too early";
-  const std::size_t most = std::max(bytes.size() * kMostExpansion, kFew);
-  return std::max(counts[0], counts[1]) > most ? "is too short for what it should hold" : "";
+  if (!data.limited) return "";
+  const std::size_t announced = std::max(counts[0], counts[1]);
+  if (announced > std::max(bytes.size() * kMostExpansion, kFew))
+    return "is too short for what it should hold";
+  if (data.promised > 0 && announced > std::max(kMostBroken * data.promised, kFewBroken))
+    return fmt::format("announces {} points or triangles, but its accessors {}", announced,
+                       data.promised);
+  return "";
 }
 
 template <class T>
@@ -116,9 +133,10 @@ std::size_t decoded_bytes(const draco::Mesh& mesh, std::span<const DracoRows> as
 std::string decode(std::span<const unsigned char> bytes, std::span<DracoRows> asked,
                    DracoMesh& mesh, DracoBudget& budget) {
   draco::DecoderBuffer buffer = buffer_of(bytes);
-  auto decoded = draco::Decoder().DecodeMeshFromBuffer(&buffer);
-  if (!decoded.ok()) return "cannot be decompressed";
-  const draco::Mesh& found = *decoded.value();
+  draco::Mesh found;
+  if (!(is_edgebreaker(bytes) ? decode_edgebreaker(buffer, found)
+                              : draco::Decoder().DecodeBufferToGeometry(&buffer, &found).ok()))
+    return "cannot be decompressed";
   if (!budget.take(decoded_bytes(found, asked)))
     return "decodes to more than a file of this size can hold (name the same data less often)";
   mesh.points = found.num_points();
@@ -138,15 +156,15 @@ DracoBudget::DracoBudget(std::size_t file_bytes)
 
 bool DracoBudget::take(std::size_t bytes) {
   if (bytes > left_) return false;
-  left_ -= bytes;
+  if (limited()) left_ -= bytes;
   return true;
 }
 
-std::string decode_draco(std::span<const unsigned char> bytes, std::span<DracoRows> asked,
-                         DracoMesh& mesh, DracoBudget& budget) {
-  if (std::string wrong = check_counts(bytes); !wrong.empty()) return wrong;
+std::string decode_draco(const DracoBytes& data, std::span<DracoRows> asked, DracoMesh& mesh,
+                         DracoBudget& budget) {
+  if (std::string wrong = check_counts(data); !wrong.empty()) return wrong;
   try {
-    return decode(bytes, asked, mesh, budget);
+    return decode(data.bytes, asked, mesh, budget);
   } catch (const std::bad_alloc&) {
     throw;
   } catch (const std::exception&) {  // such as the containers' own, for sizes that are damaged

@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <string>
 #include <vector>
@@ -29,7 +30,10 @@ class DracoBudget {
  public:
   // For a file whose buffers hold so many bytes.
   explicit DracoBudget(std::size_t file_bytes);
+  // For any number of bytes.
+  DracoBudget() : left_(std::numeric_limits<std::size_t>::max()) {}
 
+  bool limited() const { return left_ != std::numeric_limits<std::size_t>::max(); }
   // Returns false, and takes nothing, if less is left.
   bool take(std::size_t bytes);
 
@@ -37,9 +41,18 @@ class DracoBudget {
   std::size_t left_;
 };
 
+// Compressed data, and the larger of the numbers of points and triangles that the file promises of
+// them; 0: it promises none.
+struct DracoBytes {
+  std::span<const unsigned char> bytes;
+  std::size_t promised = 0;
+  bool limited = true;  // false: any counts are believed (ReadOptions::limits)
+};
+
 // Decodes a mesh of Draco's bitstream 2.2, the one that glTF allows, and the attributes that are
-// asked for. Returns what is wrong with the data, or an empty text.
-std::string decode_draco(std::span<const unsigned char> bytes, std::span<DracoRows> asked,
-                         DracoMesh& mesh, DracoBudget& budget);
+// asked for. Data that announce much more than is promised are refused before they are decoded.
+// Returns what is wrong with the data, or an empty text.
+std::string decode_draco(const DracoBytes& data, std::span<DracoRows> asked, DracoMesh& mesh,
+                         DracoBudget& budget);
 
 }  // namespace atlas

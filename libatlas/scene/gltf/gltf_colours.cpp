@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 #include <vector>
 
 #include "libatlas/scene/gltf/gltf_pose.h"
@@ -14,7 +15,38 @@ float within_range(float value) {
   return value > 0 ? std::min(value, 1.0f) : 0;
 }
 
+bool is_unlit(const tinygltf::Model& model, int material) {
+  return material >= 0 && std::size_t(material) < model.materials.size() &&
+         model.materials[std::size_t(material)].extensions.contains("KHR_materials_unlit");
+}
+
+bool beyond_one(const tinygltf::Model& model, int accessor) {
+  constexpr float kRounding = 1e-3f;  // of programs that convert colours
+  const tinygltf::Accessor& a = model.accessors[std::size_t(accessor)];
+  if (a.componentType != TINYGLTF_COMPONENT_TYPE_FLOAT) return false;
+  const auto rgb = gltf_floats(model, accessor, 3);
+  return rgb.ok() &&
+         std::any_of(rgb->begin(), rgb->end(), [](float value) { return value > 1 + kRounding; });
+}
+
 }  // namespace
+
+KeptColours find_gltf_colours(const tinygltf::Model& model) {
+  KeptColours found;
+  std::set<int> accessors;
+  for (const tinygltf::Mesh& mesh : model.meshes)
+    for (const tinygltf::Primitive& primitive : mesh.primitives) {
+      found.illuminance |= gltf_attribute(primitive.attributes, "_ILLUMINANCE") >= 0;
+      if (!is_unlit(model, primitive.material))
+        accessors.insert(gltf_attribute(primitive.attributes, "COLOR_0"));
+    }
+  for (const int accessor : accessors) {
+    if (accessor < 0 || std::size_t(accessor) >= model.accessors.size()) continue;
+    if (beyond_one(model, accessor)) found.values = GltfColours::beyond_one;
+    if (found.values == GltfColours::none) found.values = GltfColours::within_one;
+  }
+  return found;
+}
 
 Result<bool> add_gltf_light(const tinygltf::Model& model, const tinygltf::Primitive& primitive,
                             const GltfVertexRange& vertices, SceneBuilder& builder) {

@@ -7,6 +7,7 @@
 #include "libatlas/core/status.h"
 #include "libatlas/scene/building/scene_builder.h"
 #include "libatlas/scene/gltf/gltf_file.h"
+#include "libatlas/scene/gltf/gltf_kept_colours.h"
 
 namespace atlas {
 
@@ -14,6 +15,9 @@ namespace atlas {
 struct GltfVertexRange {
   std::size_t first = 0, count = 0;
 };
+
+// Returns what the file's COLOR_0 holds. Colours that cannot be read are within one.
+KeptColours find_gltf_colours(const tinygltf::Model& model);
 
 // Takes the vertices' light, _ILLUMINANCE or else COLOR_0, which is NaN where there is none, and
 // alpha of COLOR_0 if wants_rest is set. Returns whether there is light. Error: bad_input.

@@ -180,6 +180,16 @@ bool complete(const tinygltf::Model& model, const GltfDracoPart& part) {
   return all;
 }
 
+// Returns the larger of the numbers of points and triangles that the accessors have.
+std::size_t promised(const GltfDracoPart& part, const tinygltf::Model& model) {
+  std::size_t most = 0;
+  for (const GltfDracoPart::Target& target : part.attributes)
+    most = std::max(most, model.accessors[target.accessor].count);
+  for (const GltfDracoPart::Target& target : part.indices)
+    most = std::max(most, model.accessors[target.accessor].count / 3);
+  return most;
+}
+
 std::string decode_part(const GltfDracoPart& part, tinygltf::Model& model, Filler& filler,
                         DracoBudget& budget) {
   if (!complete(model, part)) return "names elements that are not as the format has them";
@@ -193,7 +203,10 @@ std::string decode_part(const GltfDracoPart& part, tinygltf::Model& model, Fille
                          target.accessor);
   }
   DracoMesh mesh;
-  if (std::string wrong = decode_draco(*bytes, asked, mesh, budget); !wrong.empty()) return wrong;
+  if (std::string wrong =
+          decode_draco({*bytes, promised(part, model), budget.limited()}, asked, mesh, budget);
+      !wrong.empty())
+    return wrong;
   for (std::size_t i = 0; i < asked.size(); ++i) {
     filler.set_stride(part.attributes[i], asked[i].stride);
     filler.fill(part.attributes[i], mesh.points, std::move(asked[i].data));
@@ -228,9 +241,9 @@ Status describe_draco(const fs::path& path, json& document, std::vector<GltfDrac
 }
 
 Status decode_draco_parts(const fs::path& path, const std::vector<GltfDracoPart>& parts,
-                          tinygltf::Model& model, json* document) {
-  Filler filler(model, document);
-  DracoBudget budget(gltf_buffer_bytes(model));
+                          const GltfLoading& loading, tinygltf::Model& model) {
+  Filler filler(model, loading.document);
+  DracoBudget budget = loading.limits ? DracoBudget(gltf_buffer_bytes(model)) : DracoBudget();
   for (const GltfDracoPart& part : parts)
     if (std::string wrong = decode_part(part, model, filler, budget); !wrong.empty())
       return malformed(path, part.primitive, wrong);

@@ -38,10 +38,11 @@ Status describe_draco(const std::filesystem::path& path, nlohmann::json& documen
                       std::vector<GltfDracoPart>& parts);
 
 // Decodes the parts into buffers of the model, which has been parsed from the described JSON, and
-// makes views and accessors fit, in the model and, unless it is null, in the document. Error:
-// bad_input if compressed data are damaged, or do not hold what the description says.
+// makes views and accessors fit, in the model and, unless it is null, in the document. They may
+// decode to more than the budget only without GltfLoading::limits. Error: bad_input if compressed
+// data are damaged, or do not hold what the description says.
 Status decode_draco_parts(const std::filesystem::path& path,
-                          const std::vector<GltfDracoPart>& parts, tinygltf::Model& model,
-                          nlohmann::json* document);
+                          const std::vector<GltfDracoPart>& parts, const GltfLoading& loading,
+                          tinygltf::Model& model);
 
 }  // namespace atlas

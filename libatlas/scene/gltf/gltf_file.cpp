@@ -23,11 +23,25 @@ namespace {
 // What tinygltf passes to the file callbacks.
 struct Folder {
   fs::path path;
-  std::vector<fs::path>& buffers;    // paths of those that were read
+  const GltfLoading& loading;
   const std::vector<double>& bytes;  // of each buffer in a file, in their order
   Status status;                     // error of the first one that could not be read
   std::size_t read = 0;
+  bool refused = false;  // one may not be read
 };
+
+// Returns the folder under which tinygltf looks for buffers.
+std::string base_of(const Folder& folder) {
+  return folder.path.empty() ? "." : folder.path.string();
+}
+
+// Returns the file of a buffer. tinygltf puts the folder before all names, also absolute ones.
+fs::path buffer_file(const Folder& folder, const std::string& name) {
+  const std::string base = base_of(folder);
+  const std::size_t begin = base.size() + !base.ends_with('/');
+  if (!name.starts_with(base) || name.size() <= begin) return name;
+  return base / fs::path(name.substr(begin));
+}
 
 // Keeps embedded images encoded. tinygltf has already decoded data URIs into `bytes`.
 bool keep_image(tinygltf::Image* image, const int, std::string*, std::string*, int, int,
@@ -39,7 +53,10 @@ bool keep_image(tinygltf::Image* image, const int, std::string*, std::string*, i
 bool read_buffer(std::vector<unsigned char>* out, std::string*, const std::string& name,
                  void* user) {
   auto& folder = *static_cast<Folder*>(user);
-  auto bytes = read_file_bytes(name);
+  const fs::path file = buffer_file(folder, name);
+  folder.refused |= !folder.loading.may_read(file);
+  if (folder.refused) return false;
+  auto bytes = read_file_bytes(file);
   if (!bytes.ok()) {
     if (folder.status.ok()) folder.status = bytes.status();
     return false;
@@ -50,7 +67,7 @@ bool read_buffer(std::vector<unsigned char>* out, std::string*, const std::strin
   if (index < folder.bytes.size() && folder.bytes[index] < double(out->size())) {
     out->resize(static_cast<std::size_t>(folder.bytes[index]));
   }
-  folder.buffers.emplace_back(name);
+  folder.loading.buffers.push_back(file);
   return true;
 }
 
@@ -295,13 +312,13 @@ Result<tinygltf::Model> load_gltf(const fs::path& path, const GltfLoading& loadi
   if (!parts->plain) data = parts->container ? std::string_view(rebuilt) : parts->json;
 
   tinygltf::TinyGLTF loader;
-  Folder folder{path.parent_path(), loading.buffers, parts->external_bytes, {}};
+  Folder folder{path.parent_path(), loading, parts->external_bytes, {}};
   loader.SetImageLoader(keep_image, nullptr);
   loader.SetFsCallbacks(file_access<tinygltf::FsCallbacks>(folder));
   tinygltf::Model model;
   std::string error, warning;
   const auto size = static_cast<unsigned>(data.size());
-  const std::string base = folder.path.empty() ? "." : folder.path.string();
+  const std::string base = base_of(folder);
   const auto* raw = reinterpret_cast<const unsigned char*>(data.data());
   bool loaded = false;
   try {
@@ -316,7 +333,7 @@ Result<tinygltf::Model> load_gltf(const fs::path& path, const GltfLoading& loadi
   if (!folder.status.ok()) return folder.status;
   if (!loaded) return malformed_gltf(path, error.empty() ? "not a glTF file" : short_line(error));
   if (Status s = decode_meshopt_views(path, fallbacks, model); !s.ok()) return s;
-  if (Status s = decode_draco_parts(path, draco, model, loading.document); !s.ok()) return s;
+  if (Status s = decode_draco_parts(path, draco, loading, model); !s.ok()) return s;
   return model;
 }
 

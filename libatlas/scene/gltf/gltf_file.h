@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -37,6 +38,9 @@ struct GltfLoading {
   DefectReport& defects;  // gets bytes that are not UTF-8
   std::vector<std::filesystem::path>& buffers;  // gets the paths of buffers that are files
   nlohmann::json* document = nullptr;           // if not null, becomes the file's JSON, an object
+  // Says which buffers that are files may be read.
+  std::function<bool(const std::filesystem::path&)> may_read = {};
+  bool limits = true;     // ReadOptions::limits
   bool lightmap = false;  // whether what the file says of a lightmap is read, see gltf_lightmap.h
 };
 

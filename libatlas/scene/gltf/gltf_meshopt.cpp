@@ -22,7 +22,7 @@ using nlohmann::json;
 // The codec for vertices spends at least two bits on sixteen bytes, and those for indices more. A
 // view that promises more than this multiple of its compressed bytes is damaged, and no memory is
 // allocated for it.
-constexpr std::size_t kMostExpansion = 64;
+constexpr std::size_t kMostViewExpansion = 64;
 
 // What the extension says about a view.
 struct Packed {
@@ -57,7 +57,7 @@ std::string read_description(const tinygltf::Model& model, const tinygltf::Value
   if (!(offset >= 0 && length >= 1 && offset + length <= double(data.size())))
     return "leaves its buffer";
   if (!(count >= 1 && stride >= 1)) return "has no count or no byteStride";
-  if (!(count * stride <= double(kMostExpansion) * length))
+  if (!(count * stride <= double(kMostViewExpansion) * length))
     return "is too short for what it should hold";
   packed.bytes =
       std::span(data).subspan(static_cast<std::size_t>(offset), static_cast<std::size_t>(length));
@@ -195,7 +195,7 @@ Status decode_meshopt_views(const fs::path& path, const std::set<int>& fallbacks
                             tinygltf::Model& model) {
   std::vector<tinygltf::Buffer> decoded;
   const std::size_t first = model.buffers.size();
-  std::size_t left = kMostExpansion * gltf_buffer_bytes(model);
+  std::size_t left = kMostViewExpansion * gltf_buffer_bytes(model);
   for (std::size_t i = 0; i < model.bufferViews.size(); ++i) {
     tinygltf::BufferView& view = model.bufferViews[i];
     if (!fallbacks.contains(view.buffer)) continue;

@@ -1,11 +1,13 @@
 // Reads glTF 2.0: merges the nodes of a scene into one mesh in world coordinates.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <glm/mat4x4.hpp>
 
 #include "libatlas/core/glm_bridge.h"
 #include "libatlas/scene/building/formats.h"
 #include "libatlas/scene/gltf/gltf_check.h"
+#include "libatlas/scene/gltf/gltf_colours.h"
 #include "libatlas/scene/gltf/gltf_file.h"
 #include "libatlas/scene/gltf/gltf_instances.h"
 #include "libatlas/scene/gltf/gltf_losses.h"
@@ -23,9 +25,11 @@ namespace {
 // hundred nodes can require 2^100 visits.
 constexpr std::size_t kMaxVisits = std::size_t{1} << 20;
 
-// Limit on vertices plus corners, some ten gigabytes. Meshes count as often as they are shown: a
-// file of a few kilobytes can ask for a million times as much as it holds.
-constexpr double kMaxShown = double(1 << 29);
+// Limits on vertices plus corners, some ten gigabytes, and less of files that have few bytes.
+// Meshes count as often as they are shown: a file of a few kilobytes can ask for a million times as
+// much as it holds.
+constexpr double kMaxShown = double(1 << 29), kFewShown = double(1 << 24),
+                 kMostShownExpansion = 1024;
 
 class GltfParser {
  public:
@@ -36,7 +40,8 @@ class GltfParser {
     if (Status s = add_gltf_materials(model_, builder_); !s.ok()) return s;
     on_path_.assign(model_.nodes.size(), false);
     const std::vector<int> shown = gltf_roots(model_);
-    if (gltf_shown_size(model_, shown) > kMaxShown) return too_much();
+    if (const double size = gltf_shown_size(model_, shown); size > most_shown())
+      return too_much(size);
     if (builder_.source) builder_.source->roots = shown;
     count_shared_nodes();
     for (const int node : shown) {
@@ -57,11 +62,31 @@ class GltfParser {
   }
 
  private:
-  Status too_much() const {
+  double most_shown() const {
+    const double bytes = double(gltf_buffer_bytes(model_));
+    return builder_.limits ? std::min(kMaxShown, std::max(kFewShown, kMostShownExpansion * bytes))
+                           : kMaxShown;
+  }
+
+  Status too_much(double size) const {
     return {ErrorCode::bad_input,
             fmt::format("{}: its meshes, each as often as it is shown, have more than {:.0f} "
-                        "vertices and corners of triangles (show fewer instances)",
-                        builder_.file, kMaxShown)};
+                        "vertices and corners of triangles (show fewer instances{})",
+                        builder_.file, most_shown(),
+                        size > kMaxShown ? "" : "; ReadOptions::limits lifts the limit")};
+  }
+
+  Status too_deep(const std::string& where) const {
+    return {ErrorCode::unsupported,
+            fmt::format("{}: {}: is nested too deeply, below more than {} nodes (export the scene "
+                        "with fewer levels)",
+                        builder_.file, where, kMostNodeDepth)};
+  }
+
+  Status too_many_visits(const std::string& where) const {
+    return {ErrorCode::unsupported,
+            fmt::format("{}: {}: nodes and instances are shown more than {} times (show fewer)",
+                        builder_.file, where, kMaxVisits)};
   }
 
   Status nothing_shown() const {
@@ -95,9 +120,9 @@ class GltfParser {
     if (index < 0 || std::size_t(index) >= model_.nodes.size()) {
       return gltf_malformed(builder_.file, where, "does not exist");
     }
-    if (on_path_[index] || depth > kMostNodeDepth || ++visits_ > kMaxVisits) {
-      return gltf_malformed(builder_.file, where, "the nodes form no tree");
-    }
+    if (on_path_[index]) return gltf_malformed(builder_.file, where, "the nodes form no tree");
+    if (depth > kMostNodeDepth) return too_deep(where);
+    if (++visits_ > kMaxVisits) return too_many_visits(where);
     if (context_.cancelled()) return Status::cancelled();
     const double part = double(nodes_visited_) / double(model_.nodes.size());
     context_.report("reading", kLoaded + (kVerticesRead - kLoaded) * part);
@@ -135,8 +160,7 @@ class GltfParser {
     if (!instances.ok()) return gltf_malformed(builder_.file, where, instances.status().message());
     place.instance = node.extensions.contains(kGltfInstancing);
     for (const glm::dmat4& instance : *instances) {
-      if (++visits_ > kMaxVisits)
-        return gltf_malformed(builder_.file, where, "has more instances than can be read");
+      if (++visits_ > kMaxVisits) return too_many_visits(where);
       if (context_.cancelled()) return Status::cancelled();
       place.matrix = instance;
       if (Status s = primitives_.add(node, matrix * instance, place); !s.ok()) return s;
@@ -167,13 +191,20 @@ void take_uv_pages(const tinygltf::Asset& asset, UvPages& pages) {
 
 Status read_gltf(const fs::path& path, SceneBuilder& builder, const Context& context) {
   auto source = std::make_shared<GltfSource>();
-  auto model = load_gltf(
-      path, {builder.wants_textures && !builder.wants_rest, builder.defects, builder.files,
-             builder.wants_rest ? &source->document : nullptr, builder.wants_lightmap});
+  const auto may_read = [&](const fs::path& buffer) {
+    return builder.may_read(buffer, builder.file);
+  };
+  auto model = load_gltf(path, {builder.wants_textures && !builder.wants_rest, builder.defects,
+                                builder.files, builder.wants_rest ? &source->document : nullptr,
+                                may_read, builder.limits, builder.wants_lightmap});
+  if (!builder.refused.ok()) return builder.refused;
   if (!model.ok()) return model.status();
   source->model = std::move(*model);
   if (Status s = builder.wants_rest ? take_data_out(path, *source) : Status(); !s.ok()) return s;
-  if (builder.wants_rest) builder.source = source;
+  if (builder.wants_rest) {
+    source->colours = find_gltf_colours(source->model);
+    builder.source = source;
+  }
   builder.not_read = gltf_not_read(source->model);
   take_uv_pages(source->model.asset, builder.uv_pages);
   return GltfParser(source->model, builder, context).run();

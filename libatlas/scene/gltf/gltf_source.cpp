@@ -7,6 +7,10 @@
 namespace atlas {
 namespace fs = std::filesystem;
 
+KeptColours kept_colours(const Scene& scene) {
+  return scene.source && !scene.source->other_light ? scene.source->colours : KeptColours{};
+}
+
 std::uint64_t positions_mark(const Scene& scene) {
   std::uint64_t mark = scene.positions.size();
   const auto mix = [&mark](std::uint64_t bits) {

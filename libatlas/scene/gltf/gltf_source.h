@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "libatlas/scene/gltf/gltf_file.h"
+#include "libatlas/scene/gltf/gltf_kept_colours.h"
 #include "libatlas/scene/scene.h"
 
 namespace atlas {
@@ -45,7 +46,8 @@ struct GltfSource {
   // KHR_texture_basisu), which are written as they are. Empty: the image is none of these, or there
   // is none. Empty as a whole, like image_texture, if no texture was asked for.
   std::vector<std::vector<std::uint8_t>> image_files;
-  bool other_light = false;          // whether Scene::illumination is from another file
+  bool other_light = false;  // whether Scene::illumination is from another file
+  KeptColours colours;
   std::uint64_t positions_mark = 0;  // positions_mark() of the scene as it was read
 };
 

@@ -173,8 +173,7 @@ class MtlParser {
   fs::path texture_file(std::string_view name) const {
     const fs::path folder = path_.parent_path();
     const fs::path whole = builder_.named_files.file(folder, name);
-    std::error_code ignored;  // a path that cannot be examined does not exist
-    if (fs::exists(whole, ignored)) return whole;
+    if (builder_.named_files.exists(whole)) return whole;
     const std::string_view quoted = quoted_name(name);
     return builder_.named_files.file(folder,
                                      quoted.empty() ? TextScanner::without_comment(name) : quoted);
@@ -192,8 +191,7 @@ class MtlParser {
     const bool has_options = rest.starts_with('-');
     for (int skipped = 0; !rest.empty() && skipped < kMostWords; ++skipped, next_word(rest)) {
       fs::path file = texture_file(rest);
-      std::error_code ignored;  // a path that cannot be examined does not exist
-      if (fs::is_regular_file(file, ignored))
+      if (builder_.named_files.is_file(file))
         return builder_.other_files.push_back(std::move(file));
       if (!has_options) return;
     }

@@ -185,6 +185,7 @@ class Merger {
     for (const LibraryFile& file :
          builder_.named_files.library_files(path_.parent_path(), event.text)) {
       if (!libraries_.insert(file.path).second) continue;
+      if (!builder_.may_read(file.path, place(event.line))) return builder_.refused;
       if (!file.exists) {
         builder_.defects.add(DefectKind::material_file_missing, [&] {
           return fmt::format("{} ({})", file.path.string(), place(event.line));

@@ -155,31 +155,44 @@ class PlyParser {
     return {};
   }
 
-  Status read_vertices(const Context& context) {
-    const auto xyz = find_group({{"x", "y", "z"}});
-    if (xyz.empty()) {
-      return {ErrorCode::bad_input,
-              fmt::format("{}: its vertices have no x, y and z (export positions)", builder_.file)};
-    }
+  // Returns the properties that hold the light of vertices or faces, three or none.
+  std::vector<int> find_light() const {
     auto rgb = find_group({{"illuminance_r", "illuminance_g", "illuminance_b"},
                            {"illumination_r", "illumination_g", "illumination_b"},
                            {"illuminance"},
                            {"r", "g", "b"},
                            {"red", "green", "blue"},
                            {"diffuse_red", "diffuse_green", "diffuse_blue"}});
-    builder_.linear_light =
-        !rgb.empty() && element_->properties[rgb[0]].name.starts_with("illumin");
     if (rgb.size() == 1) rgb = {rgb[0], rgb[0], rgb[0]};
+    return rgb;
+  }
+
+  bool is_linear(const std::vector<int>& light) const {
+    return !light.empty() && element_->properties[light[0]].name.starts_with("illumin");
+  }
+
+  // Returns a property of the current element as a share, if it is an integer without a sign.
+  float share(int property) const {
+    return float(scalars_[property] * colour_scale(element_->properties[property].type));
+  }
+
+  Vec3f light_of(const std::vector<int>& rgb) const {
+    return {share(rgb[0]), share(rgb[1]), share(rgb[2])};
+  }
+
+  Status read_vertices(const Context& context) {
+    const auto xyz = find_group({{"x", "y", "z"}});
+    if (xyz.empty()) {
+      return {ErrorCode::bad_input,
+              fmt::format("{}: its vertices have no x, y and z (export positions)", builder_.file)};
+    }
+    const auto rgb = find_light();
+    builder_.linear_light = is_linear(rgb);
     const auto uv = find_group(
         {{"s", "t"}, {"u", "v"}, {"texture_u", "texture_v"}, {"texture_s", "texture_t"}});
     const auto given_normal = find_group({{"nx", "ny", "nz"}});
     const auto normal = builder_.wants_normals ? given_normal : std::vector<int>();
     const auto alpha = builder_.wants_rest ? find_group({{"alpha"}}) : std::vector<int>();
-    const double opaque = alpha.empty() ? 1 : colour_scale(element_->properties[alpha[0]].type);
-    double scale[3] = {1, 1, 1};
-    for (std::size_t c = 0; c < rgb.size(); ++c) {
-      scale[c] = colour_scale(element_->properties[rgb[c]].type);
-    }
     begin();
     std::vector<int> read;
     for (const std::vector<int>& group : {xyz, rgb, uv, normal, alpha})
@@ -196,11 +209,8 @@ class PlyParser {
       const auto& s = scalars_;
       losses.take(s);
       builder_.positions.push_back({s[xyz[0]], s[xyz[1]], s[xyz[2]]});
-      if (!rgb.empty()) {
-        builder_.illumination.push_back({float(s[rgb[0]] * scale[0]), float(s[rgb[1]] * scale[1]),
-                                         float(s[rgb[2]] * scale[2])});
-      }
-      if (!alpha.empty()) builder_.vertex_opacity.push_back(float(s[alpha[0]] * opaque));
+      if (!rgb.empty()) builder_.illumination.push_back(light_of(rgb));
+      if (!alpha.empty()) builder_.vertex_opacity.push_back(share(alpha[0]));
       if (!uv.empty()) builder_.texcoords.push_back({float(s[uv[0]]), float(s[uv[1]])});
       if (!normal.empty()) {
         builder_.normals.push_back({float(s[normal[0]]), float(s[normal[1]]), float(s[normal[2]])});
@@ -244,8 +254,13 @@ class PlyParser {
     }
     const int wedge = element_->find("texcoord"), number = element_->find("texnumber");
     begin();
-    PlyLosses losses(*element_,
-                     std::array{list, wedge, header_.texture_files.empty() ? -1 : number}, "faces");
+    std::vector<int> read{list, wedge, header_.texture_files.empty() ? -1 : number};
+    const auto rgb = find_face_light();
+    const auto alpha =
+        rgb.empty() || !builder_.wants_rest ? std::vector<int>() : find_group({{"alpha"}});
+    for (const std::vector<int>& group : {rgb, alpha})
+      read.insert(read.end(), group.begin(), group.end());
+    PlyLosses losses(*element_, read, "faces");
     builder_.reserve_triangles(element_->count, vertex_uvs_ || wedge >= 0);
     std::vector<std::int64_t> corners, uvs;
     for (; index_ < element_->count; ++index_) {
@@ -260,9 +275,27 @@ class PlyParser {
         uvs = corners;
       }
       builder_.material = number < 0 ? 0 : material_of(number);
+      if (!rgb.empty()) builder_.face_colour = {light_of(rgb), alpha.empty() ? 1 : share(alpha[0])};
       builder_.add_face({corners, uvs, normals_of(corners)}, [&] { return place(); });
     }
+    builder_.face_colour.reset();
     count(losses);
+    return {};
+  }
+
+  // Returns the properties that hold the light of faces, which is used if vertices have none.
+  std::vector<int> find_face_light() {
+    const auto rgb = find_light();
+    if (rgb.empty() || builder_.illumination.empty()) {
+      if (!rgb.empty()) builder_.linear_light = is_linear(rgb);
+      return rgb;
+    }
+    builder_.defects.add(
+        DefectKind::element_ignored,
+        [&] {
+          return fmt::format("{}: colours of faces, as its vertices have some", builder_.file);
+        },
+        element_->count);
     return {};
   }
 

@@ -12,16 +12,11 @@ namespace atlas {
 namespace fs = std::filesystem;
 namespace {
 
-bool is_there(const fs::path& path) {
-  std::error_code ignored;  // a path that cannot be examined does not exist
-  return fs::exists(path, ignored);
-}
-
 // Urls are percent-encoded, but some programs write file names as they are.
-fs::path vrml_file(const std::string& url, const std::string& world) {
-  const fs::path folder = fs::path(world).parent_path();
+fs::path vrml_file(const std::string& url, const SceneBuilder& builder) {
+  const fs::path folder = fs::path(builder.file).parent_path();
   const fs::path plain = folder / url;
-  return is_there(plain) ? plain : folder / decode_uri(url);
+  return builder.named_files.exists(plain) ? plain : folder / decode_uri(url);
 }
 
 class AppearanceParser {
@@ -30,7 +25,7 @@ class AppearanceParser {
 
   RawMaterial run(std::string_view token) {
     scan_.read_node(token, [&](std::string_view type, std::string_view name) {
-      if (type != "Appearance") scan_.fail("an Appearance expected");
+      if (!is("Appearance", type)) return;
       scan_.fields([&](std::string_view field) {
         if (field == "material") return material(), true;
         if (field == "texture") return texture(), true;
@@ -63,7 +58,7 @@ class AppearanceParser {
   // Without a Material, a shape is unlit and white.
   void material() {
     scan_.read_node(scan_.next(), [&](std::string_view type, std::string_view name) {
-      if (type != "Material") scan_.fail("a Material expected");
+      if (!is("Material", type)) return;
       has_material_ = true;
       material_.name = name;
       material_.diffuse = {0.8f, 0.8f, 0.8f};
@@ -88,7 +83,7 @@ class AppearanceParser {
   void texture() {
     scan_.read_node(scan_.next(), [&](std::string_view type, std::string_view) {
       if (type == "MovieTexture" || type == "PixelTexture") return other_texture(type);
-      if (type != "ImageTexture") scan_.fail("an ImageTexture expected");
+      if (!is("ImageTexture", type)) return;
       scan_.fields([&](std::string_view field) {
         if (field == "repeatS") return material_.wrap_u = wrap(), true;
         if (field == "repeatT") return material_.wrap_v = wrap(), true;
@@ -96,6 +91,21 @@ class AppearanceParser {
         return false;
       });
     });
+  }
+
+  // Returns whether a node is of the type that belongs here. A node of a PROTO may be one, too, but
+  // it is not read. Others are malformed.
+  bool is(std::string_view wanted, std::string_view type) {
+    if (type == wanted) return true;
+    if (!scan_.prototypes().contains(type)) {
+      const bool vowel = wanted[0] == 'A' || wanted[0] == 'I';
+      scan_.fail(fmt::format("{} {} expected", vowel ? "an" : "a", wanted));
+    }
+    builder_.defects.add(DefectKind::element_ignored, [&] {
+      return fmt::format("{}:{}: {}", builder_.file, scan_.line(), type);
+    });
+    note_vrml_files(scan_, builder_);
+    return false;
   }
 
   // Leaves the shape its plain colour.
@@ -112,9 +122,10 @@ class AppearanceParser {
     scan_.nodes([&](std::string_view token) {
       if (token.size() < 2 || token[0] != '"') scan_.fail("a url in quotes expected");
       const std::string url(token.substr(1, token.size() - 2));
-      const fs::path found = url.empty() ? fs::path() : vrml_file(url, builder_.file);
+      const fs::path found = url.empty() ? fs::path() : vrml_file(url, builder_);
       builder_.other_files.push_back(found);
-      if (!file.empty() && (is_there(file) || !is_there(found))) return;
+      const NamedFiles& files = builder_.named_files;
+      if (!file.empty() && (files.exists(file) || !files.exists(found))) return;
       file = found;
       image_ = url;
     });
@@ -127,7 +138,7 @@ class AppearanceParser {
   // format says.
   void transform() {
     scan_.read_node(scan_.next(), [&](std::string_view type, std::string_view) {
-      if (type != "TextureTransform") scan_.fail("a TextureTransform expected");
+      if (!is("TextureTransform", type)) return;
       glm::dvec4 centre(0), scale(1), move(0);
       double angle = 0;
       scan_.fields([&](std::string_view field) {
@@ -159,7 +170,7 @@ void note_vrml_files(VrmlScanner& scan, SceneBuilder& builder) {
     scan.nodes([&](std::string_view token) {
       if (token.size() > 2 && token[0] == '"')
         builder.other_files.push_back(
-            vrml_file(std::string(token.substr(1, token.size() - 2)), builder.file));
+            vrml_file(std::string(token.substr(1, token.size() - 2)), builder));
     });
     return true;
   });

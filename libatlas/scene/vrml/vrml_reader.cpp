@@ -1,13 +1,20 @@
 // Reads VRML97 worlds: the part of the language that this project's exporter writes, and similar
 // files. Everything else is skipped by its brackets.
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <cstdint>
 #include <glm/gtc/quaternion.hpp>
 #include <glm/mat4x4.hpp>
+#include <iterator>
 #include <limits>
 #include <map>
+#include <set>
+#include <span>
+#include <string>
 #include <tuple>
 
 #include "libatlas/core/glm_bridge.h"
@@ -23,6 +30,12 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr int kMaxDepth = 200;  // of nested nodes
+
+// Limits on the text that a file unpacks to, and on what its USE repeat: a few nested USE can stand
+// for more nodes than there are bytes in any memory. A scene takes up to eight times the bytes of
+// its text. Worlds compress to a fifth up to a thirtieth.
+constexpr std::uint64_t kFewText = std::uint64_t{64} << 20, kMostExpansion = 128;
+constexpr std::uint64_t kAnyText = std::uint64_t{1} << 50;
 
 glm::dmat4 rotation(const glm::dvec4& axis_and_angle) {
   const glm::dvec3 axis(axis_and_angle);
@@ -45,26 +58,45 @@ auto key_of(const RawMaterial& m) {
 
 class VrmlParser : VrmlScanner {
  public:
-  VrmlParser(const std::string& text, SceneBuilder& builder, const Context& context)
-      : VrmlScanner(text, context), builder_(builder), context_(context) {}
+  VrmlParser(const std::string& text, double most_repeated, SceneBuilder& builder,
+             const Context& context)
+      : VrmlScanner(text, most_repeated, context), builder_(builder), context_(context) {}
 
   Status run() {
     if (!text().starts_with("#VRML V2.0 utf8")) {
       return error("a VRML97 file begins with '#VRML V2.0 utf8'");
     }
     try {
-      for (std::string_view token = next(); !token.empty(); token = next()) {
-        node(token, glm::dmat4(1), 0);
-      }
+      if (text().find("USE") != std::string_view::npos) count_repetitions();
+      world();
     } catch (const MalformedVrml&) {
       return context_.cancelled() ? Status::cancelled() : error(what());
     }
-    if (shapes_.empty() && builder_.defects.count(DefectKind::node_hidden) > 0) return all_hidden();
     finish();
-    return {};
+    const bool any = builder_.triangle_count() + builder_.defects.triangles_left_out > 0;
+    return any || context_.cancelled() ? Status() : without_faces();
   }
 
  private:
+  void world() {
+    for (std::string_view token = next(); !token.empty(); token = next())
+      node(token, glm::dmat4(1), 0);
+  }
+
+  // Refuses a file that repeats too much before any of it is copied. What is malformed ends the
+  // counting, and is told when it is read.
+  void count_repetitions() {
+    const char* const begin = place();
+    set_counting(true);
+    try {
+      world();
+    } catch (const MalformedVrml&) {
+      if (repeats_too_much() || context_.cancelled()) throw;
+    }
+    set_counting(false);
+    go_to(begin);
+  }
+
   Status error(const std::string& what) const {
     const bool remedied = what.ends_with(')');
     return {ErrorCode::bad_input,
@@ -73,25 +105,43 @@ class VrmlParser : VrmlScanner {
                 remedied ? "" : " (not all of VRML97 is read; give the scene in another format)")};
   }
 
-  Status all_hidden() const {
-    return {ErrorCode::bad_input,
-            fmt::format("{}: no triangle to work on: it shows none of the children of {} Switch "
-                        "nodes (set their whichChoice)",
-                        builder_.file, builder_.defects.count(DefectKind::node_hidden))};
+  // Says why a world without faces has none, if it holds what would show something. Otherwise
+  // SceneBuilder::finish() says that there is nothing.
+  Status without_faces() const {
+    const auto names = [](const auto& all) {
+      constexpr std::size_t kMostNamed = 5;
+      const auto end = std::next(all.begin(), std::ptrdiff_t(std::min(all.size(), kMostNamed)));
+      return fmt::format("{}{}", fmt::join(all.begin(), end, ", "),
+                         all.size() > kMostNamed ? ", ..." : "");
+    };
+    std::vector<std::string> why;
+    if (!unread_.empty())
+      why.push_back("of what shows faces only IndexedFaceSet is read, not " + names(unread_));
+    if (!prototypes().empty())
+      why.push_back("PROTO is not supported, and it declares " + names(prototypes()));
+    const char* remedy =
+        why.empty() ? "set their whichChoice" : "export the scene as a triangle mesh";
+    if (const auto hidden = builder_.defects.count(DefectKind::node_hidden); hidden > 0)
+      why.push_back(fmt::format("it shows none of the children of {} Switch nodes", hidden));
+    if (why.empty()) return {};
+    return {ErrorCode::bad_input, fmt::format("{}: no triangle to work on: {} ({})", builder_.file,
+                                              fmt::join(why, "; "), remedy)};
   }
 
   void node(std::string_view token, const glm::dmat4& matrix, int depth) {
     if (depth > kMaxDepth) fail("nodes are nested too deeply");
     if (token == "ROUTE") return ignored(token), skip_route();  // the world at rest is read
-    if (token == "PROTO" || token == "EXTERNPROTO") fail(fmt::format("{} is not supported", token));
+    if (skip_prototype(token)) return;
     read_node(token, [&](std::string_view type, std::string_view) {
-      if (type == "Shape") return shape(matrix);
       if (is_group(type)) return group(matrix, depth);
       if (type == "Switch" || type == "LOD") return choice(type == "LOD", matrix, depth);
+      if (counting()) return count_uses();
+      if (type == "Shape") return shape(matrix);
       if (type == "WorldInfo") return world_info();
       if (type == "Viewpoint") return viewpoint(matrix);
       if (type == "Inline")  // the shapes of another file
-        return ignored(type), note_vrml_files(*this, builder_);
+        return unread(type), note_vrml_files(*this, builder_);
+      if (prototypes().contains(type)) ignored(type);
       skip();
     });
   }
@@ -103,7 +153,13 @@ class VrmlParser : VrmlScanner {
   }
 
   void ignored(std::string_view type) {
+    if (counting()) return;
     builder_.defects.add(DefectKind::element_ignored, [&] { return place_of(place(), type); });
+  }
+  // Does the same for a node that would show something.
+  void unread(std::string_view type) {
+    ignored(type);
+    unread_.insert(std::string(start_of(type)));
   }
   std::string place_of(const char* at, std::string_view type) const {
     return fmt::format("{}:{}: {}", builder_.file, line_of(at), type);
@@ -114,17 +170,16 @@ class VrmlParser : VrmlScanner {
   void world_info() {
     constexpr std::string_view kNote = "\"origin ";
     fields([&](std::string_view name) {
-      if (name != "info" || peek() != "[") return false;
-      next();
-      for (std::string_view token = next(); token != "]" && !token.empty(); token = next()) {
+      if (name != "info") return false;
+      nodes([&](std::string_view token) {
         builder_.uv_pages.take(token);
-        if (!token.starts_with(kNote)) continue;
+        if (!token.starts_with(kNote)) return;
         const char* p = token.data() + kNote.size();
         glm::dvec3 origin(0);
         for (int i = 0; i < 3 && p; ++i)
           p = parse_number(p + (i > 0), token.data() + token.size(), origin[i]);
         if (p && *p == ':') origin_ = origin;
-      }
+      });
       return true;
     });
   }
@@ -189,7 +244,7 @@ class VrmlParser : VrmlScanner {
       shown = true;
       node(token, matrix, depth + 1);
     });
-    if (count > 0 && !shown) {
+    if (count > 0 && !shown && !counting()) {
       builder_.defects.add(DefectKind::node_hidden, [&] {
         return place_of(begin, fmt::format("Switch with whichChoice {}", chosen));
       });
@@ -207,7 +262,7 @@ class VrmlParser : VrmlScanner {
       if (name != "geometry") return false;
       read_node(next(), [&](std::string_view type, std::string_view) {
         if (type == "IndexedFaceSet") return face_set(result), void(has_faces = true);
-        ignored(type);
+        unread(type);
         skip();
       });
       return true;
@@ -236,10 +291,6 @@ class VrmlParser : VrmlScanner {
 
   // Colours take the place of that of the material.
   void take_colours(VrmlShape& shape, RawMaterial& material) {
-    if (!shape.colour_per_vertex) {
-      shape.colours = {};
-      return ignored("Color of faces");
-    }
     give_points_colours(shape);
     material.diffuse = {1, 1, 1};
   }
@@ -381,6 +432,7 @@ class VrmlParser : VrmlScanner {
   SceneBuilder& builder_;
   const Context& context_;
   glm::dvec3 origin_{0};
+  std::set<std::string> unread_;  // what would have shown something
   std::vector<VrmlShape> shapes_;
   std::vector<Base> bases_;
   std::map<decltype(key_of({})), std::uint32_t> material_ids_;
@@ -389,9 +441,12 @@ class VrmlParser : VrmlScanner {
 }  // namespace
 
 Status read_vrml(const fs::path& path, SceneBuilder& builder, const Context& context) {
-  auto text = read_text_or_gzip(path);
+  std::error_code error;  // reading tells
+  const std::uintmax_t bytes = fs::file_size(path, error);
+  const std::uint64_t most = builder.limits ? std::max(kFewText, kMostExpansion * bytes) : kAnyText;
+  auto text = read_text_or_gzip(path, most);
   if (!text.ok()) return text.status();
-  return VrmlParser(*text, builder, context).run();
+  return VrmlParser(*text, double(most), builder, context).run();
 }
 
 }  // namespace atlas

@@ -9,14 +9,6 @@
 #include "libatlas/scene/files/text_scanner.h"
 
 namespace atlas {
-namespace {
-
-// Limits on the text that USE repeats, of which a file may have the larger. A few nested USE can
-// stand for more nodes than there are bytes in any memory; a scene takes up to eight times the
-// bytes of its text, so the first is some ten gigabytes, as for the instances of glTF.
-constexpr double kMostRepeated = double(1 << 30), kMostRepetitions = 64;
-
-}  // namespace
 
 std::ptrdiff_t VrmlScanner::line_of(const char* place) const {
   return 1 + std::count(begin_, std::min(place, end_), '\n');
@@ -103,7 +95,7 @@ double VrmlScanner::integer() {
 
 std::vector<double> VrmlScanner::list(std::size_t width) {
   std::vector<double> values;
-  numbers(&VrmlScanner::number, [&](double value) { values.push_back(value); });
+  numbers(&VrmlScanner::number, width, [&](double value) { values.push_back(value); });
   if (values.size() % width != 0) fail(fmt::format("a list of rows of {} with an odd end", width));
   return values;
 }
@@ -111,7 +103,7 @@ std::vector<double> VrmlScanner::list(std::size_t width) {
 std::vector<std::int32_t> VrmlScanner::indices() {
   constexpr std::int32_t kMost = std::numeric_limits<std::int32_t>::max();
   std::vector<std::int32_t> values;
-  numbers(&VrmlScanner::integer, [&](double value) {
+  numbers(&VrmlScanner::integer, 1, [&](double value) {
     const bool usable = value == -1 || (value >= 0 && value <= kMost);
     values.push_back(usable ? static_cast<std::int32_t>(value) : kNoIndex);
   });
@@ -119,9 +111,13 @@ std::vector<std::int32_t> VrmlScanner::indices() {
 }
 
 void VrmlScanner::end_numbers() {
-  if (peek() != "]") fail(fmt::format("'{}' is not a number", start_of(peek())));
+  if (peek() != "]") not_a_number();
   expect("]");
   tell();
+}
+
+void VrmlScanner::not_a_number() {
+  fail(fmt::format("'{}' is not a number", start_of(peek())));
 }
 
 void VrmlScanner::tell() const {
@@ -143,13 +139,23 @@ bool VrmlScanner::is_field(std::string_view token) {
 }
 
 void VrmlScanner::skip_brackets() {
-  const char* begin = at_;
-  for (int open = 1; open > 0;) {
+  constexpr std::ptrdiff_t kLong = 256;  // shorter ones are passed as fast as they are found
+  std::vector<const char*> open{at_};
+  while (!open.empty()) {
+    const auto known = at_ == open.back() ? ends_.find(at_) : ends_.end();
+    if (known != ends_.end()) {
+      at_ = known->second;
+      open.pop_back();
+      continue;
+    }
     const std::string_view token = next();
     if (token.empty()) fail("the file ends inside a node");
-    open += token == "{" || token == "[" ? 1 : token == "}" || token == "]" ? -1 : 0;
+    if (token == "{" || token == "[") open.push_back(at_);
+    if (token != "}" && token != "]") continue;
+    if (at_ - open.back() >= kLong) ends_.emplace(open.back(), at_);
+    open.pop_back();
   }
-  if (uses_ > 0) count_repeated(double(at_ - begin));
+  if (context_.cancelled()) throw MalformedVrml();
 }
 
 void VrmlScanner::skip_node(std::string_view token) {
@@ -167,6 +173,22 @@ void VrmlScanner::skip_route() {
   next();
 }
 
+// Nodes within are made where the name is used, and names that DEF gives them hold only within.
+bool VrmlScanner::skip_prototype(std::string_view token) {
+  const bool external = token == "EXTERNPROTO";
+  if (token != "PROTO" && !external) return false;
+  prototypes_.insert(next());
+  expect("[");
+  skip_brackets();
+  if (external) {
+    nodes([](std::string_view) {});  // its urls
+  } else {
+    expect("{");
+    skip_brackets();
+  }
+  return true;
+}
+
 std::string_view VrmlScanner::type_of(std::string_view token, std::string_view& name) {
   if (token == "DEF") {
     name = next();
@@ -178,8 +200,9 @@ std::string_view VrmlScanner::type_of(std::string_view token, std::string_view& 
   return token;
 }
 
-// Text counts once for each time that it is read, so that too much is refused before any of it is.
-// A USE within its own DEF counts nothing: it is refused when it is read.
+// Text counts once for each time that it is read, so that too much is refused before any of it is;
+// USE in nodes that are not shown count, too. A USE within its own DEF counts nothing: it is
+// refused when it is read.
 void VrmlScanner::find_definitions() {
   struct Open {
     std::vector<Definition>* list;
@@ -192,6 +215,7 @@ void VrmlScanner::find_definitions() {
   const char* before = at_;
   at_ = begin_;
   for (std::string_view token = next(); !token.empty(); token = next()) {
+    if (skip_prototype(token)) continue;
     if (token == "DEF") {
       std::vector<Definition>& list = definitions_[next()];
       list.push_back({token.data(), 0});
@@ -214,6 +238,25 @@ void VrmlScanner::find_definitions() {
   definitions_found_ = true;
 }
 
+void VrmlScanner::count_repeated(double bytes) {
+  repeated_ += bytes;
+  if (repeated_ > most_repeated_)
+    fail(fmt::format(
+        "USE repeats more than the {:.0f} MiB of text that are read of this file (make "
+        "several files of it, or show less by USE; ReadOptions::limits lifts the limit)",
+        most_repeated_ / (1 << 20)));
+}
+
+void VrmlScanner::count_uses() {
+  expect("{");
+  for (int open = 1; open > 0;) {
+    const std::string_view token = next();
+    if (token.empty()) fail("the file ends inside a node");
+    open += token == "{" || token == "[" ? 1 : token == "}" || token == "]" ? -1 : 0;
+    if (token == "USE") count_repeated(definition_of(next(), token.data()).bytes);
+  }
+}
+
 const VrmlScanner::Definition& VrmlScanner::definition_of(std::string_view name, const char* use) {
   if (!definitions_found_) find_definitions();
   const auto found = definitions_.find(name);
@@ -227,20 +270,12 @@ const VrmlScanner::Definition& VrmlScanner::definition_of(std::string_view name,
   fail(fmt::format("USE of '{}', which no DEF before it names", start_of(name)));
 }
 
-void VrmlScanner::count_repeated(double bytes) {
-  repeated_ += bytes;
-  const double most = std::max(kMostRepeated, kMostRepetitions * double(end_ - begin_));
-  if (repeated_ > most)
-    fail(
-        fmt::format("USE repeats more than the {:.0f} MiB of text that are read of this file (make "
-                    "several files of it, or show less by USE)",
-                    most / (1 << 20)));
-  if (context_.cancelled()) throw MalformedVrml();
-}
-
 void VrmlScanner::skip_value() {
-  for (std::string_view token = peek(); token != "}" && token != "ROUTE" && !is_field(token);
-       token = peek()) {
+  const auto ends = [](std::string_view token) {
+    return token == "}" || token == "ROUTE" || token == "PROTO" || token == "EXTERNPROTO" ||
+           is_field(token);
+  };
+  for (std::string_view token = peek(); !ends(token); token = peek()) {
     if (token.empty()) fail("the file ends inside a node");
     const bool names = token == "DEF" || token == "USE";
     next();

@@ -7,8 +7,10 @@
 #include <glm/vec4.hpp>
 #include <limits>
 #include <map>
+#include <set>
 #include <string>
 #include <string_view>
+#include <unordered_map>
 #include <vector>
 
 #include "libatlas/core/context.h"
@@ -21,11 +23,13 @@ class MalformedVrml {};
 
 class VrmlScanner {
  public:
-  // `text` must end with a newline, which is not scanned.
-  VrmlScanner(const std::string& text, const Context& context)
+  // `text` must end with a newline, which is not scanned. USE may repeat at most `most` bytes of
+  // it.
+  VrmlScanner(const std::string& text, double most, const Context& context)
       : begin_(text.data()),
         at_(text.data()),
         end_(text.data() + text.size() - 1),
+        most_repeated_(most),
         context_(context) {}
 
   std::string_view text() const { return {begin_, std::size_t(end_ - begin_)}; }
@@ -41,9 +45,9 @@ class VrmlScanner {
   // The beginning of a token, for messages: at most 40 bytes of its first line.
   static std::string_view start_of(std::string_view token);
 
-  // Reads `[ numbers ]`, whose count must be a multiple of `width`.
+  // Reads `[ numbers ]`, whose count must be a multiple of `width`, or one row without brackets.
   std::vector<double> list(std::size_t width);
-  // Reads `[ indices ]`. What is no index of a list becomes kNoIndex.
+  // Reads `[ indices ]`, or one without brackets. What is no index of a list becomes kNoIndex.
   std::vector<std::int32_t> indices();
   static constexpr double kScanned = 0.8;  // share of the time until faces are added
   static constexpr std::int32_t kNoIndex = std::numeric_limits<std::int32_t>::min();
@@ -61,6 +65,7 @@ class VrmlScanner {
         skip_route();
         continue;
       }
+      if (skip_prototype(token)) continue;
       check_field(token);
       if (!field(token)) skip_value();
     }
@@ -71,7 +76,10 @@ class VrmlScanner {
   void nodes(const Each& each) {
     std::string_view token = next();
     if (token != "[") return each(token);
-    for (token = next(); token != "]"; token = next()) each(token);
+    for (token = next(); token != "]"; token = next()) {
+      if (token.empty()) fail("the file ends inside a list");
+      if (!skip_prototype(token)) each(token);
+    }
   }
   // Reads the node that begins with `token`, or the one that `USE NAME` stands for: calls
   // read(type, name) before its opening bracket, where `name` is empty unless DEF gives one. Does
@@ -86,7 +94,7 @@ class VrmlScanner {
     }
     const std::string_view name = next();
     const Definition& definition = definition_of(name, token.data());
-    if (uses_ == 0) count_repeated(definition.bytes);  // those of the USE within are part of it
+    if (counting_) return count_repeated(definition.bytes);
     const char* after = at_;
     at_ = definition.place;
     ++uses_;
@@ -97,6 +105,17 @@ class VrmlScanner {
   void skip_node(std::string_view token);
   // Skips `NODE.eventOut TO NODE.eventIn` after ROUTE.
   void skip_route();
+  // If `token` is PROTO or EXTERNPROTO, skips what it declares, notes the name and returns true.
+  bool skip_prototype(std::string_view token);
+  // The names of the PROTO and EXTERNPROTO so far, as types of nodes.
+  const std::set<std::string_view>& prototypes() const { return prototypes_; }
+  // Until `counting` is false again, read_node() does not follow USE, but counts how much of the
+  // text they repeat, and throws if that is more than may be.
+  void set_counting(bool counting) { counting_ = counting; }
+  bool counting() const { return counting_; }
+  bool repeats_too_much() const { return repeated_ > most_repeated_; }
+  // Counts all USE from before an opening bracket to after its closing bracket.
+  void count_uses();
   // Skips from after an opening bracket to after its closing bracket.
   void skip_brackets();
 
@@ -113,11 +132,19 @@ class VrmlScanner {
   bool number(double& value);
   // Reads the same, or a hexadecimal integer.
   bool integer(double& value);
-  // Reads `[ numbers ]` by `read`, one of the two above, and calls add(number) for each.
+  // Reads `[ numbers ]` by `read`, one of the two above, and calls add(number) for each. A value of
+  // `width` numbers may do without the brackets.
   template <class Add>
-  void numbers(bool (VrmlScanner::*read)(double&), const Add& add) {
-    expect("[");
+  void numbers(bool (VrmlScanner::*read)(double&), std::size_t width, const Add& add) {
     double value;
+    if (peek() != "[") {
+      for (std::size_t i = 0; i < width; ++i) {
+        if (!(this->*read)(value)) not_a_number();
+        add(value);
+      }
+      return;
+    }
+    expect("[");
     for (std::size_t count = 1; (this->*read)(value); ++count) {
       add(value);
       if (count % 65536 == 0) tell();
@@ -125,6 +152,7 @@ class VrmlScanner {
     end_numbers();
   }
   void end_numbers();
+  [[noreturn]] void not_a_number();
   // Reports how much of the text is read, unless a USE leads back in it. Throws if the work is
   // cancelled.
   void tell() const;
@@ -140,13 +168,20 @@ class VrmlScanner {
   void count_repeated(double bytes);
 
   const char *begin_, *at_, *end_;
+  const double most_repeated_;
   const Context& context_;
   std::string what_;
   // Where each name is defined, in the order of the file; filled by the first USE.
   std::map<std::string_view, std::vector<Definition>> definitions_;
   bool definitions_found_ = false;
+  std::set<std::string_view> prototypes_;
   int uses_ = 0;         // how many USE are being followed, one within the other
-  double repeated_ = 0;  // bytes that USE makes the scanner pass once more
+  double repeated_ = 0;  // bytes that USE repeats, as far as they are counted
+  bool counting_ = false;
+  // Where long pairs of brackets end, by what is after the opening one. Groups are passed over
+  // before their children are read, so that brackets within brackets would be passed again and
+  // again.
+  std::unordered_map<const char*, const char*> ends_;
 };
 
 }  // namespace atlas

@@ -12,7 +12,8 @@ struct VrmlShape {
   std::vector<Vec3d> points;
   std::vector<Vec2f> uvs;
   std::vector<Vec3f> colours;
-  // Indices, with a -1 after each face; the latter two may be empty, and are then the first.
+  // Indices, with a -1 after each face; the latter two may be empty, and are then the first. Those
+  // of colours of faces are one a face, without -1.
   std::vector<std::int32_t> corners, uv_corners, colour_corners;
   bool colour_per_vertex = true;  // false: one for each face
   std::uint32_t material = 0;
@@ -27,8 +28,8 @@ struct VrmlShape {
 // and y before z.
 void add_default_uvs(VrmlShape& shape);
 
-// Turns the colours, which are given per vertex or corner, into one for each point: a point whose
-// corners differ in colour becomes several. A component of a point without a colour is NaN.
+// Turns the colours, which are given per vertex, corner or face, into one for each point: a point
+// whose corners differ in colour becomes several. A component of a point without a colour is NaN.
 void give_points_colours(VrmlShape& shape);
 
 }  // namespace atlas

@@ -36,10 +36,10 @@ TEST_F(AtlasExport, ThePageOfTheReportNamesItsKeys) {
   write("box.obj", lit_box(4));
   const std::string page = slurp(REPORT_PAGE);
   for (const char* more : {"", " --charts-only"}) {
-    ASSERT_EQ(
-        run(fmt::format("{0}/box.obj -o {0}/w.wrl --report {0}/r.json{1}", dir_.string(), more))
-            .exit_code,
-        0);
+    ASSERT_EQ(run(fmt::format("{0}/box.obj -o {0}/w.wrl --report {0}/r.json --report-charts{1}",
+                              dir_.string(), more))
+                  .exit_code,
+              0);
     const auto report = nlohmann::json::parse(slurp(dir_ / "r.json"));
     for (const auto& object : {report, report["charts"], report["charts"]["cpu_parts_s"],
                                report["charts"]["charts"][0], report["packing"]})
@@ -49,6 +49,24 @@ TEST_F(AtlasExport, ThePageOfTheReportNamesItsKeys) {
         EXPECT_TRUE(named) << key;
       }
   }
+}
+
+TEST_F(AtlasExport, TheReportSaysHowItWasMade) {
+  write("box.obj", lit_box(2));
+  const std::string arguments = fmt::format(
+      "{0}/box.obj -o {0}/w.glb -q --atlas-size 64 --up Z --report {0}/r.json", dir_.string());
+  ASSERT_EQ(run(arguments).exit_code, 0);
+  const auto report = nlohmann::json::parse(slurp(dir_ / "r.json"));
+  const std::string version = run("--version").output;
+  EXPECT_EQ("atlas-export " + report["version"].get<std::string>() + "\n", version);
+  EXPECT_EQ(report["command"], fmt::format("{} {}", ATLAS_EXPORT, arguments));
+  const auto& options = report["options"];
+  EXPECT_EQ(options["scene"], (dir_ / "box.obj").string());
+  EXPECT_EQ(options["--atlas-size"], "64");
+  EXPECT_EQ(options["--up"], "Z");
+  EXPECT_EQ(options["--quiet"], "true");
+  EXPECT_EQ(options["--quantity"], "illuminance") << "by default";
+  EXPECT_FALSE(options.contains("--exr")) << "was not given";
 }
 
 TEST_F(AtlasExport, ThePageOfProgramsExplainsEveryLineOfAStage) {

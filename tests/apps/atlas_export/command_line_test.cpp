@@ -121,16 +121,18 @@ TEST(ExportOptions, OfTexturesAndTheMesh) {
 }
 
 TEST(ExportOptions, OfFilesAndRunning) {
-  const ExportCommand c = parsed({"--illumination", "light.txt", "--report", "r.json", "--plan",
-                                  "-q", "--threads", "3", "--unit", "cm"});
+  const ExportCommand c =
+      parsed({"--illumination", "light.txt", "--report", "r.json", "--plan", "-q", "--threads", "3",
+              "--unit", "cm", "--report-charts", "--durable"});
   EXPECT_EQ(c.scene, "in.obj");
   EXPECT_EQ(c.options.target, "out.wrl");
   EXPECT_EQ(c.read.illumination_file, "light.txt");
   EXPECT_EQ(c.reports, std::vector<std::filesystem::path>{"r.json"});
-  EXPECT_TRUE(c.plan_only && c.quiet);
+  EXPECT_TRUE(c.plan_only && c.quiet && c.request.chart_rows && c.options.durable);
   EXPECT_EQ(c.threads, 3);
   EXPECT_EQ(c.read.metres_per_unit, 0.01);
-  EXPECT_FALSE(parsed({}).plan_only || parsed({}).quiet);
+  const ExportCommand plain = parsed({});
+  EXPECT_FALSE(plain.plan_only || plain.quiet || plain.request.chart_rows || plain.options.durable);
   EXPECT_EQ(parsed({}).threads, 0);
 }
 

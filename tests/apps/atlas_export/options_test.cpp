@@ -52,6 +52,42 @@ std::string light_of(const std::string& obj) {
   return light;
 }
 
+TEST_F(ExportFlags, ConfineRefusesFilesOutsideOfTheFolder) {
+  fs::create_directory(dir_ / "in");
+  write("secret.mtl", "newmtl a\nKd 1 0 0\n");
+  write("in/a.obj", "mtllib ../secret.mtl\nusemtl a\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+  done("{0}/in/a.obj -o {0}/w.obj");
+  const RunResult r = run(fmt::format("{0}/in/a.obj -o {0}/v.obj --confine", dir_.string()));
+  EXPECT_EQ(r.exit_code, 1) << r.output;
+  EXPECT_TRUE(holds(r.output, "secret.mtl, which lies outside of the scene's folder")) << r.output;
+  EXPECT_TRUE(holds(r.output, "leave out --confine)")) << r.output;
+  EXPECT_FALSE(fs::exists(dir_ / "v.obj"));
+}
+
+TEST_F(ExportFlags, LimitsInProportionToTheFileCanBeLifted) {
+  std::string wrl =
+      "#VRML V2.0 utf8\nDEF a Group { children [ Shape { geometry IndexedFaceSet { "
+      "coord Coordinate { point [ 0 0 0, 1 0 0, 0 1 0 ] } coordIndex [ 0 "
+      "1 2 -1 ] } } WorldInfo { info \"" +
+      std::string(100'000, 'x') + "\" } ] }\n";
+  for (int i = 0; i < 700; ++i) wrl += "USE a ";
+  write("a.wrl", wrl);
+  const RunResult r = run(fmt::format("{0}/a.wrl --plan", dir_.string()));
+  EXPECT_EQ(r.exit_code, 1) << r.output;
+  EXPECT_TRUE(holds(r.output, "--no-limits lifts the limit)")) << r.output;
+  done("{0}/a.wrl --plan --no-limits");
+}
+
+TEST_F(ExportFlags, TexelsOfPlainUvsSizeThePage) {
+  const std::string coarse = done("{0}/box.obj -o {0}/w.obj --charts-only --texel 10cm");
+  EXPECT_TRUE(holds(coarse, "texels of 0.1 m")) << coarse;
+  EXPECT_NE(coarse, done("{0}/box.obj -o {0}/w.obj --charts-only --texel 1cm"));
+  const RunResult r = run(fmt::format(
+      "{0}/box.obj -o {0}/w.obj --charts-only --texel 1mm --atlas-size 64", dir_.string()));
+  EXPECT_EQ(r.exit_code, 1) << r.output;
+  EXPECT_TRUE(holds(r.output, "--texel: 0.001 m needs more room")) << r.output;
+}
+
 // A page of 2048 x 2048 texels takes 4 bytes a texel and a third more for its mip levels: 22.4 MB.
 TEST_F(ExportFlags, MemoryBecomesPages) {
   for (const auto& [memory, budget] : {std::pair("50MB", "2 pages of 2048²"),

@@ -2,7 +2,9 @@
 // memory, signals.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 #include <sys/wait.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <chrono>
@@ -11,6 +13,7 @@
 #include <string>
 #include <thread>
 
+#include "tests/support/program_output.h"
 #include "tests/support/temp_folder.h"
 
 namespace atlas {
@@ -149,8 +152,64 @@ TEST_F(System, MemoryThatIsNotThere) {
   const RunResult r = run_limited(50000, fmt::format("{} {} -o {} -q --threads 1 --charts-only",
                                                      ATLAS_EXPORT, scene.string(), to("w.glb")));
   EXPECT_EQ(r.exit_code, 1) << r.output;
-  EXPECT_NE(r.output.find("out of memory"), std::string::npos) << r.output;
+  EXPECT_NE(r.output.find("many.obj: out of memory"), std::string::npos) << r.output;
   EXPECT_EQ(folder_.count(), 2u);
+}
+
+// OpenImageIO, which is for other formats than PNG and JPEG, would take 115 MiB.
+TEST_F(System, ALitExportTakesLittleMemory) {
+  for (const char* name : {"w.wrl", "w.glb", "w.obj"}) {
+    const std::string report = to("r.json");
+    ASSERT_EQ(run(fmt::format("{} -o {} --atlas-size 64 -q --report {}", scene_, to(name), report))
+                  .exit_code,
+              0);
+    const std::string json = TempFolder::read(report);
+    EXPECT_LT(test::json_field(json, "peak_mib"), 40) << name;
+  }
+  const RunResult r = run_limited(
+      300000, fmt::format("{} {} -o {} --atlas-size 64 -q", ATLAS_EXPORT, scene_, to("v.glb")));
+  EXPECT_EQ(r.exit_code, 0) << r.output;
+}
+
+// Root is not bound by a limit of processes. HOME is not known either.
+class OrdinaryUser : public System {
+ protected:
+  void SetUp() override {
+    System::SetUp();
+    ASSERT_EQ(::chmod(folder_.path().c_str(), 0777), 0);
+    if (shell(as_user(fmt::format("test -x {}", ATLAS_EXPORT))).exit_code != 0)
+      GTEST_SKIP() << "the program is not accessible for another user";
+  }
+  static std::string as_user(const std::string& command) {
+    if (::geteuid() != 0) return command;
+    return "setpriv --reuid=65534 --regid=65534 --clear-groups " + command;
+  }
+  static RunResult run_few(int processes, const std::string& arguments) {
+    return shell(fmt::format("env -u HOME prlimit --nproc={} {} 2>&1", processes,
+                             as_user(fmt::format("{} {}", ATLAS_EXPORT, arguments))));
+  }
+};
+
+TEST_F(OrdinaryUser, FewProcesses) {
+  ASSERT_EQ(run(fmt::format("{} -o {} -q", scene_, to("a.glb"))).exit_code, 0);
+  for (int processes = 1; processes <= 4; ++processes) {
+    const RunResult r =
+        run_few(processes, fmt::format("{} -o {} -q --threads 4", scene_, to("b.glb")));
+    EXPECT_EQ(r.exit_code, 0) << r.output;
+    EXPECT_EQ(r.output, "");
+    EXPECT_EQ(TempFolder::read(folder_ / "b.glb"), TempFolder::read(folder_ / "a.glb"));
+    fs::remove(folder_ / "b.glb");
+  }
+}
+
+// Libraries that OpenImageIO needs would end the program where no thread can start.
+TEST_F(OrdinaryUser, FewProcessesForOtherFormats) {
+  for (int processes = 1; processes <= 4; ++processes) {
+    const RunResult r = run_few(processes, fmt::format("{} -o {} -q --exr", scene_, to("b.glb")));
+    EXPECT_EQ(r.exit_code, 1);
+    EXPECT_EQ(std::count(r.output.begin(), r.output.end(), '\n'), 1) << r.output;
+    EXPECT_NE(r.output.find("more threads than the system grants"), std::string::npos) << r.output;
+  }
 }
 
 // What so many threads reserve does not fit. oneTBB would end the program.

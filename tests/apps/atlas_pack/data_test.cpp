@@ -16,10 +16,6 @@ namespace {
 
 using nlohmann::json;
 
-bool holds(const std::string& text, const std::string& part) {
-  return text.find(part) != std::string::npos;
-}
-
 constexpr const char* kHead = "name,page,x,y,width,height,rotated\n";
 
 TEST_F(AtlasPack, ListsMayHaveAnySeparator) {

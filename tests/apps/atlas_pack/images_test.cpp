@@ -299,6 +299,25 @@ TEST_F(AtlasPack, NoSpriteIsWrittenOverThroughALink) {
 }
 
 // Such a page once took 14 GB before anything was drawn.
+// A flat image of a few kilobytes is as large as its sides say, once it is decoded.
+TEST_F(AtlasPack, ImagesLargerThanThePageAreRefusedBeforeTheyAreDecoded) {
+  fs::create_directories(dir_ / "in");
+  ASSERT_TRUE(atlas::write_png(dir_ / "in/flat.png", atlas::Image8(6000, 5000, 1), {9}).ok());
+  EXPECT_LT(fs::file_size(dir_ / "in/flat.png"), 100'000u);
+  const RunResult r = run("images in -o sheet --page 256x256");
+  EXPECT_EQ(r.exit_code, 1) << r.output;
+  EXPECT_NE(r.output.find("in/flat.png: 6000 x 5000 texels are more than the page of 256 x 256"),
+            std::string::npos)
+      << r.output;
+  // What is trimmed may fit.
+  atlas::Image8 small(600, 500, 4);
+  small.at(300, 200)[3] = 255;
+  fs::remove(dir_ / "in/flat.png");
+  ASSERT_TRUE(atlas::write_png(dir_ / "in/small.png", small, {}).ok());
+  EXPECT_EQ(run("images in -o sheet --page 256x256").exit_code, 0);
+  EXPECT_NE(run("images in -o other --page 256x256 --no-trim").exit_code, 0);
+}
+
 TEST_F(AtlasPack, PagesThatNoMemoryHoldsAreRefused) {
   fs::create_directories(dir_ / "in");
   ASSERT_TRUE(atlas::write_png(dir_ / "in/a.png", atlas::Image8(8, 8, 3, 9), {}).ok());

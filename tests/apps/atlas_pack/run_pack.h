@@ -21,6 +21,10 @@ struct RunResult {
   std::string output;
 };
 
+inline bool holds(const std::string& text, const std::string& part) {
+  return text.find(part) != std::string::npos;
+}
+
 class AtlasPack : public testing::Test {
  protected:
   void SetUp() override {
