@@ -28,7 +28,7 @@ inline std::vector<BrokenCharts> broken_charts() {
            [](ChartSet& set) { set.charts[0].first_triangle = 0xffffffff; }},
           {"uvs beyond the set", [](ChartSet& set) { set.charts[0].first_uv = 1000000; }},
           {"more uvs than there are", [](ChartSet& set) { set.charts[0].uv_count = 1000000; }},
-          {"a uv that is no number", [](ChartSet& set) { set.uvs[2].y = NAN; }},
+          {"a uv that is not finite", [](ChartSet& set) { set.uvs[2].y = INFINITY; }},
           {"a size that is no number", [](ChartSet& set) { set.charts[0].size.x = NAN; }},
           {"a size below 0", [](ChartSet& set) { set.charts[0].size.y = -1; }},
           {"a chart beyond the set", [](ChartSet& set) { set.triangle_chart[1] = 1000000; }},
