@@ -100,7 +100,7 @@ TEST(Off, FacesShareVerticesWhereTheirColoursAgree) {
 }
 
 TEST(Off, FacesWithoutAColourAreDark) {
-  const auto loaded = load(kTwoFaces + "3 0 1 2\n3 0 2 3 255 0 0\n");
+  const auto loaded = load_off(kTwoFaces + "3 0 1 2\n3 0 2 3 255 0 0\n");
   ASSERT_TRUE(loaded.ok()) << loaded.status().message();
   const Vec3f red{1, 0, 0};
   EXPECT_EQ(corner_light(loaded->scene), (std::vector<Vec3f>{{}, {}, {}, red, red, red}));
@@ -110,7 +110,7 @@ TEST(Off, FacesWithoutAColourAreDark) {
 // Colours of vertices say more, and those of faces are told to be ignored.
 TEST(Off, ColoursOfVerticesComeFirst) {
   const auto loaded =
-      load("COFF\n3 1 0\n0 0 0 255 0 0\n1 0 0 0 0 0\n0 1 0 0 0 0\n3 0 1 2 0 255 0\n");
+      load_off("COFF\n3 1 0\n0 0 0 255 0 0\n1 0 0 0 0 0\n0 1 0 0 0 0\n3 0 1 2 0 255 0\n");
   ASSERT_TRUE(loaded.ok()) << loaded.status().message();
   EXPECT_EQ(loaded->scene.illumination[0], (Vec3f{1, 0, 0}));
   ASSERT_EQ(loaded->defects.count(DefectKind::element_ignored), 1u);
@@ -118,7 +118,7 @@ TEST(Off, ColoursOfVerticesComeFirst) {
 }
 
 TEST(Off, IndicesBeyondTheVerticesReachNoCopies) {
-  const auto loaded = load(kTwoFaces + "3 0 1 2 9 8 7\n3 0 2 4 9 8 6\n");
+  const auto loaded = load_off(kTwoFaces + "3 0 1 2 9 8 7\n3 0 2 4 9 8 6\n");
   ASSERT_TRUE(loaded.ok()) << loaded.status().message();
   EXPECT_EQ(loaded->scene.triangle_count(), 1u);
 }

@@ -1,4 +1,5 @@
-// A temporary folder for one test, which is removed with everything in it.
+// A temporary folder for one test, or for making its parameters, which is removed with everything
+// in it.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -14,7 +15,8 @@ class TempFolder {
  public:
   TempFolder() {
     const auto* info = ::testing::UnitTest::GetInstance()->current_test_info();
-    std::string name = std::string(info->test_suite_name()) + "." + info->name();
+    std::string name =
+        info ? std::string(info->test_suite_name()) + "." + info->name() : "parameters";
     for (char& c : name) {
       if (c == '/') c = '_';
     }
