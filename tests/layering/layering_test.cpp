@@ -177,12 +177,12 @@ TEST(Layering, PublicHeadersShowNoThirdParty) {
 // each what can be left out of a build.
 TEST(Layering, TheComponentUvUsesFewPackages) {
   const std::map<std::string, std::string> where{{"core/run_chunks_tbb.cpp", "oneapi/"},
-                                                 {"core/predicates.cpp", "CGAL/"},
                                                  {"param/cgal_backend.cpp", "CGAL/"}};
-  ASSERT_FALSE(components().empty());
-  ASSERT_EQ(components()[0].name, "uv");
+  const std::vector<Component> all = components();
+  ASSERT_FALSE(all.empty());
+  ASSERT_EQ(all[0].name, "uv");
   int seen = 0;
-  for (const std::string& folder : components()[0].folders) {
+  for (const std::string& folder : all[0].folders) {
     for (const fs::path& path : sources("", ("libatlas/" + folder).c_str())) {
       const auto other = where.find(fs::relative(path, kRoot / "libatlas").string());
       for (const Include& include : includes_of(path)) {

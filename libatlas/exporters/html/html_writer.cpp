@@ -3,10 +3,12 @@
 
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <span>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -14,7 +16,6 @@
 #include "libatlas/core/file_extension.h"
 #include "libatlas/core/glm_bridge.h"
 #include "libatlas/exporters/html/mesh_columns.h"
-#include "libatlas/exporters/html/page_text.h"
 #include "libatlas/exporters/viewing/camera.h"
 #include "libatlas/exporters/viewing/visitor.h"
 #include "libatlas/exporters/world.h"
@@ -22,6 +23,7 @@
 #include "libatlas/exporters/writing/text_output.h"
 #include "libatlas/exporters/writing/unify_vertices.h"
 #include "libatlas/scene/files/file_bytes.h"
+#include "viewer_page.h"  // cmake/AtlasEmbed.cmake
 
 namespace atlas {
 namespace fs = std::filesystem;
@@ -34,6 +36,29 @@ constexpr std::string_view kLightType = "application/x-atlas-light";  // of writ
 // a 65535th of the box, which no screen shows.
 constexpr double kStepMetres = 0.0005, kStepsOfBox = 65535, kMostSteps = 1 << 24;
 constexpr std::uint32_t kUvSteps = 65535;
+// They need each other in this order.
+constexpr std::string_view kScripts[] = {
+    embedded::vectors_js,  embedded::data_js,  embedded::triangles_js, embedded::shaders_js,
+    embedded::renderer_js, embedded::light_js, embedded::cameras_js,   embedded::input_js,
+    embedded::panel_js,    embedded::views_js, embedded::measuring_js, embedded::main_js};
+
+// Writes page.html piece by piece.
+class Template {
+ public:
+  explicit Template(TextFile& file) : file_(file) {}
+  // Writes what stands before the next mark, and leaves the mark out.
+  void write_to(std::string_view mark) {
+    const std::size_t at = rest_.find(mark);
+    assert(at != std::string_view::npos);
+    file_.write(rest_.substr(0, at));
+    rest_.remove_prefix(at + mark.size());
+  }
+  void write_rest() { file_.write(rest_); }
+
+ private:
+  TextFile& file_;
+  std::string_view rest_ = embedded::page_html;
+};
 
 // The page's coordinates are metres from the world's origin, and +Y is up.
 glm::dvec3 in_page(const World& world, const glm::dvec3& p) {
@@ -263,9 +288,12 @@ Result<WorldFile> write_html(const World& world, const fs::path& path, AtomicFil
   if (!mesh.ok()) return mesh.status();
 
   TextFile file(files.path_for(path), path, false);
-  file.write(kPageBeforeTitle);
+  Template page(file);
+  page.write_to("@title@");
   file.write(escaped(world.title));
-  file.write(kPageBeforeData);
+  page.write_to("@style@");
+  file.write(embedded::page_css);
+  page.write_to("@data@");
   std::string text = head.dump(-1, ' ', true, json::error_handler_t::replace);
   // "</script" would end the element, and "<!--" begin a comment.
   for (std::size_t at = 0; (at = text.find('<', at)) != std::string::npos;)
@@ -273,7 +301,9 @@ Result<WorldFile> write_html(const World& world, const fs::path& path, AtomicFil
   file.write("<script type=\"application/json\" id=\"world\">" + text + "</script>\n");
   write_data(file, "mesh", *mesh);
   if (Status s = write_images(file, world); !s.ok()) return s;
-  file.write(kPageAfterData);
+  page.write_to("@script@");
+  for (const std::string_view script : kScripts) file.write(script);
+  page.write_rest();
   if (Status s = file.finish(); !s.ok()) return s;
   result.bytes = file.bytes();
   return result;
