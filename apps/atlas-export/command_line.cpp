@@ -195,7 +195,7 @@ void add_page_options(CLI::App& app, ExportOptions& options) {
   CLI::Option* format =
       app.add_option("--texture-format", options.texture_format,
                      "Format of the pages' images: png, or webp, which is smaller (.gltf, .glb, "
-                     ".html); unless given, .html has webp of quality 97")
+                     ".html); unless given, .html has webp of quality 95")
           ->transform(
               choices<TextureFormat>({{"png", TextureFormat::png}, {"webp", TextureFormat::webp}}))
           ->type_name("NAME")
@@ -250,7 +250,7 @@ std::string quoted(const std::string& word) {
   return out + "'";
 }
 
-constexpr int kHtmlQuality = 97;                // of WebP
+constexpr int kHtmlQuality = 95;                // of WebP
 constexpr double kMostPages = 1e6;              // the limit of --atlases
 constexpr double kBytesPerTexel = 4.0 * 4 / 3;  // RGBA8 and its mip chain
 

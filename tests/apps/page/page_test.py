@@ -157,7 +157,7 @@ class InTheBrowser(unittest.TestCase):
         self.assertLess(self.webp.stat().st_size, self.plain.stat().st_size)
         pictures = []
         for path in (self.webp, self.plain):
-            self.open(path)
+            self.open(path, width=640, height=400)
             self.page.value("document.getElementById('hint').hidden = true")
             pictures.append(page_file.read_png(self.page.screenshot()).texels)
             self.expect_silence(path)
