@@ -27,6 +27,9 @@ vec3 place(mat4 to_map, vec3 x, vec3 y, vec3 p, vec3 n, float off) {
 vec3 place0(vec3 p, vec3 n, float off) {
   return place(frame.to_map0, frame.map_x0.xyz, frame.map_y0.xyz, p, n, off);
 }
+)";
+
+constexpr const char* kSecondMap = R"(
 vec3 place1(vec3 p, vec3 n, float off) {
   return place(frame.to_map1, frame.map_x1.xyz, frame.map_y1.xyz, p, n, off);
 }
@@ -211,6 +214,7 @@ const char* sampling_text(ShadowSampling shadow) {
 
 std::string shadow_text(const ShaderFeatures& f) {
   std::string s = kMaps;
+  if (f.shadow != ShadowSampling::one) s += kSecondMap;
   s += filter_text(f.pcf);
   return s + sampling_text(f.shadow);
 }

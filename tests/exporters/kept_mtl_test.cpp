@@ -1,6 +1,7 @@
 // Tests World::scene: materials that were read from an MTL.
 #include <gtest/gtest.h>
 
+#include <set>
 #include <string>
 
 #include "libatlas/image/image_io.h"
@@ -156,8 +157,8 @@ TEST(KeptMtl, UnlitTexturesStayUnlitInGltf) {
                    "f 1/1 2/2 3/3\nusemtl b\nf 1/1 3/3 2/2\n");
   EXPECT_EQ(keep(obj, folder / "w.gltf", kMtlRest).not_kept, Lines{});
   const json document = json::parse(TempFolder::read(folder / "w.gltf"));
-  EXPECT_EQ(document["extensionsUsed"],
-            (json{"KHR_materials_emissive_strength", "KHR_materials_unlit"}));
+  EXPECT_EQ(document["extensionsUsed"].get<std::set<std::string>>(),
+            (std::set<std::string>{"KHR_materials_emissive_strength", "KHR_materials_unlit"}));
   const auto back = read_scene(folder / "w.gltf", {}, {});
   ASSERT_TRUE(back.ok()) << back.status().message();
   ASSERT_EQ(back->scene.materials.size(), 2u);

@@ -323,6 +323,7 @@ TEST(BrokenOptions, OfExportsAreRefused) {
                       {"packing", [](O& o) { beyond(o.packing); }},
                       {"simplify_slip", [](O& o) { o.simplify_slip = kNan; }},
                       {"up", [](O& o) { beyond(o.up); }},
+                      {"linear", [](O& o) { o.linear = true; }},
                       {"texture_format", [](O& o) { beyond(o.texture_format); }},
                       {"webp_quality", [](O& o) { o.webp_quality = 101; }},
                       {"compress", [](O& o) { o.compress = true; }},
@@ -333,7 +334,8 @@ TEST(BrokenOptions, OfExportsAreRefused) {
                       {"false_colour", [](O& o) { o.false_colour = "a.jpg"; }}},
                      {"larger_plain_page", "square_plain_page", "follow_textures", "split_at_light",
                       "more_mip_levels", "outlines", "simplify", "exr", "charts_only",
-                      "extra_files", "report_pictures", "measure_error"}};
+                      "colours_are_light", "extra_files", "durable", "report_pictures",
+                      "measure_error"}};
   O good;
   good.target = "a.wrl";
   expect_each_is_refused(

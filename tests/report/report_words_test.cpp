@@ -66,10 +66,10 @@ TEST(ReportWords, TheCommandIsThatOfTheProgram) {
 }
 
 TEST(ReportWords, RowsOfChartsComeOnRequest) {
-  const test::TempFolder folder;
   ExportReport r = complete_report();
   r.charts.resize(3);
   EXPECT_EQ(written(r)["charts"]["charts"].size(), 3u);
+  const test::TempFolder folder;  // the test's only one: written() has removed its own
   ASSERT_TRUE(write_json(r, folder / "short.json").ok());
   const json file = json::parse(test::TempFolder::read(folder / "short.json"));
   EXPECT_EQ(file["charts"]["count"], 3);

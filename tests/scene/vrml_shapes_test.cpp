@@ -149,7 +149,7 @@ TEST(Vrml, NotedOriginsMoveTheScene) {
             2000001.25);
   EXPECT_EQ(x("[ \"origin 2000000.25 0 0 of the survey\" ]"), 1);
   EXPECT_EQ(x("[ \"origin unknown:\" ]"), 1);
-  EXPECT_EQ(x("\"origin 5 0 0: not in a list\""), 1);
+  EXPECT_EQ(x("\"origin 5 0 0: the only value needs no brackets\""), 6);
 }
 
 TEST(Vrml, TransformsOfTexturesTellMaterialsApart) {

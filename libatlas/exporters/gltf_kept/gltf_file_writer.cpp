@@ -90,7 +90,8 @@ class FileWriter {
         map_set_(lightmap_set(source_.document)) {
     json asset = std::move(document_.json["asset"]);
     document_.json = source_.document;
-    for (const char* list : {"accessors", "bufferViews"}) document_.json.erase(list);
+    for (const char* list : {"accessors", "bufferViews", "extensionsUsed", "extensionsRequired"})
+      document_.json.erase(list);
     document_.json["asset"] = std::move(asset);
   }
 

@@ -78,8 +78,9 @@ std::set<std::string> listed(const json& document, const char* list) {
   return names;
 }
 
-// Lists as used the extensions that are in the document, and those that the source lists as used
-// without containing them, such as that for quantised values.
+// Lists as used the extensions that are in the document, those that it lists because the writer
+// uses them, and those that the source lists as used without containing them, such as that for
+// quantised values.
 void list_extensions(const json& before, json& document) {
   std::set<std::string> had, has;
   collect_extensions(before, had);
@@ -89,7 +90,8 @@ void list_extensions(const json& before, json& document) {
     if (!had.contains(name)) used.insert(name);
   for (const std::string& name : listed(before, "extensionsRequired"))
     if (used.contains(name)) required.insert(name);
-  for (const std::string& name : listed(document, "extensionsRequired")) required.insert(name);
+  used.merge(listed(document, "extensionsUsed"));
+  required.merge(listed(document, "extensionsRequired"));
   for (const char* list : {"extensionsUsed", "extensionsRequired"}) document.erase(list);
   if (!used.empty()) document["extensionsUsed"] = used;
   if (!required.empty()) document["extensionsRequired"] = required;
