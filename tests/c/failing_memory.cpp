@@ -23,6 +23,9 @@ void* allocate_or_throw(std::size_t size, std::size_t alignment) {
 
 }  // namespace
 
+#ifdef __GNUC__  // inlined, these look as if malloc's memory were given to another's delete
+#pragma GCC diagnostic ignored "-Wmismatched-new-delete"
+#endif
 void* operator new(std::size_t size) {
   return allocate_or_throw(size, alignof(std::max_align_t));
 }
