@@ -350,6 +350,7 @@ Result<ChartSet> make_charts(const MeshView& mesh, const ChartOptions& options,
   CanonicalMesh canonical = canonical_mesh(given, *welded);
   welded = WeldedVertices{};
   given = canonical.view(given.texcoords);
+  given.objects = mesh.objects;  // one per input vertex, as source_vertex names them
   Result<Topology> built = build_topology(
       {given, std::move(canonical.places), std::move(canonical.opposite)},
       {options.split_at_materials, options.keep_uv_charts, uv_aspects(options)}, context);

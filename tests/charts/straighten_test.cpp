@@ -17,11 +17,11 @@ TEST(MinCut, CostsWhatTheBestOfAllCutsCosts) {
   std::mt19937 random(1);
   for (int round = 0; round < 300; ++round) {
     const std::uint32_t n = 2 + random() % 9;
-    struct Edge {
+    struct Arcs {
       MinCut::Arc a, b;
       int weight;
     };
-    std::vector<Edge> edges;
+    std::vector<Arcs> edges;
     std::vector<std::array<int, 2>> ties(n);
     std::vector<std::uint32_t> free_slots(n, 0);
     MinCut cut;
@@ -40,7 +40,7 @@ TEST(MinCut, CostsWhatTheBestOfAllCutsCosts) {
     }
     const auto cost = [&](const auto& side) {
       int sum = 0;
-      for (const Edge& e : edges) sum += side(e.a.node) != side(e.b.node) ? e.weight : 0;
+      for (const Arcs& e : edges) sum += side(e.a.node) != side(e.b.node) ? e.weight : 0;
       for (std::uint32_t i = 0; i < n; ++i) sum += ties[i][1 - side(i)];
       return sum;
     };

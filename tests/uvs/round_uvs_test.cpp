@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
 #include <charconv>
 #include <cmath>
 #include <cstdlib>
@@ -284,6 +286,21 @@ TEST(RoundUvs, SpecksThatPinchTheBorderEnd) {
   EXPECT_LE(in_integers(mesh, rounded), left);
 }
 
+// The same triangles in the order in which round_uvs() takes them. How many stay thin depends on
+// the order.
+FlatMesh in_order(FlatMesh mesh) {
+  std::vector<std::array<std::uint32_t, 3>> triangles;
+  for (std::size_t c = 0; c < mesh.corners.size(); c += 3) {
+    std::array<std::uint32_t, 3> t{mesh.corners[c], mesh.corners[c + 1], mesh.corners[c + 2]};
+    std::rotate(t.begin(), std::min_element(t.begin(), t.end()), t.end());
+    triangles.push_back(t);
+  }
+  std::sort(triangles.begin(), triangles.end());
+  mesh.corners.clear();
+  for (const auto& t : triangles) mesh.corners.insert(mesh.corners.end(), t.begin(), t.end());
+  return mesh;
+}
+
 // Where corners may hardly move, many slivers stay thin. Pushing them on from there closes more of
 // some stacks than it opens, and opens more of others.
 TEST(RoundUvs, PushingOnNeverClosesMore) {
@@ -291,7 +308,7 @@ TEST(RoundUvs, PushingOnNeverClosesMore) {
   std::size_t all = 0, all_before = 0;
   for (const double slope : {0.0, 0.3, 0.785398}) {
     for (const double height : {1e-8, 1e-9, 1e-12}) {
-      const FlatMesh mesh = stack_of_slivers(8, 20, slope, height);
+      const FlatMesh mesh = in_order(stack_of_slivers(8, 20, slope, height));
       const Buckets corners_at = sort_into_buckets(mesh.corners.size(), mesh.uvs.size(),
                                                    [&](std::size_t i) { return mesh.corners[i]; });
       std::vector<glm::dvec2> exact;
