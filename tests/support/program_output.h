@@ -20,10 +20,10 @@ inline std::string output_of(const std::string& command) {
 }
 
 // Returns the number in field `name` of a flat JSON object.
-inline double json_field(const std::string& json, const std::string& name) {
-  const std::size_t at = json.find("\"" + name + "\":");
-  EXPECT_NE(at, std::string::npos) << name << " in " << json;
-  return at == std::string::npos ? 0 : std::atof(json.c_str() + at + name.size() + 3);
+inline double json_field(const std::string& text, const std::string& name) {
+  const std::size_t at = text.find("\"" + name + "\":");
+  EXPECT_NE(at, std::string::npos) << name << " in " << text;
+  return at == std::string::npos ? 0 : std::atof(text.c_str() + at + name.size() + 3);
 }
 
 }  // namespace atlas::test

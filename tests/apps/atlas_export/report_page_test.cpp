@@ -20,11 +20,11 @@
 namespace atlas::test {
 namespace {
 
-using nlohmann::json;
+using Json = nlohmann::json;
 
 // Returns the figure at a key such as "stages.0.wall_ms".
-json at(const json& report, const std::string& key) {
-  json value = report;
+Json at(const Json& report, const std::string& key) {
+  Json value = report;
   std::istringstream names(key);
   for (std::string name; std::getline(names, name, '.');)
     value = value.is_array() ? value.at(std::stoul(name)) : value.at(name);
@@ -39,7 +39,7 @@ TEST_F(AtlasExport, TheReportIsAPageWhoseFiguresAreTheJsons) {
                       "--texture-format webp --quality 50 --report {0}/r.json --report {0}/r.html",
                       dir_.string()));
   ASSERT_EQ(r.exit_code, 0) << r.output;
-  const json report = json::parse(slurp(dir_ / "r.json"));
+  const Json report = Json::parse(slurp(dir_ / "r.json"));
   EXPECT_FALSE(report["error"]["worst"].empty());
 
   // Without a network, and with the console on stderr.

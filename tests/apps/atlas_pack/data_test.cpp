@@ -14,7 +14,7 @@
 namespace atlas::test {
 namespace {
 
-using nlohmann::json;
+using Json = nlohmann::json;
 
 constexpr const char* kHead = "name,page,x,y,width,height,rotated\n";
 
@@ -88,18 +88,18 @@ TEST_F(AtlasPack, TurnedAndUnplacedItemsAreWrittenAsTheyAre) {
       << read("p.svg");
   EXPECT_FALSE(holds(read("p.svg"), "<title>c<"));
   EXPECT_EQ(run(command + "-o p.json").exit_code, 1);
-  const json frames = json::parse(read("p.json"))["frames"];
+  const Json frames = Json::parse(read("p.json"))["frames"];
   EXPECT_EQ(frames.size(), 2u);
   EXPECT_EQ(frames["b"]["frame"]["w"], 30) << "the size of the item before it is turned";
   EXPECT_EQ(frames["b"]["rotated"], true);
   EXPECT_EQ(frames["a"]["rotated"], false);
   const RunResult summary = run(command + "-o p.csv --json");
-  const json told = json::parse(summary.output.substr(summary.output.find('{'))
+  const Json told = Json::parse(summary.output.substr(summary.output.find('{'))
                                     .substr(0, summary.output.find('\n', summary.output.find('{')) -
                                                    summary.output.find('{')));
   EXPECT_EQ(told["unplaced"], 1);
   EXPECT_EQ(told["items"], 3);
-  EXPECT_EQ(told["pages"], json::parse(R"([{"width":20,"height":30}])"));
+  EXPECT_EQ(told["pages"], Json::parse(R"([{"width":20,"height":30}])"));
   EXPECT_NEAR(double(told["utilization"]), 400.0 / 600, 1e-6);
 }
 
@@ -120,19 +120,19 @@ TEST_F(AtlasPack, NamesThatAJsonObjectCannotHoldTwiceMayStandInOtherOutputs) {
   write("l.csv", "a,4,5\na,6,7\n");
   EXPECT_EQ(run("rects l.csv -o p.csv").exit_code, 0);
   EXPECT_EQ(run("rects l.csv -o p.json --data array").exit_code, 0);
-  EXPECT_EQ(json::parse(read("p.json"))["frames"].size(), 2u);
+  EXPECT_EQ(Json::parse(read("p.json"))["frames"].size(), 2u);
   EXPECT_EQ(run("rects l.csv -o q.json").exit_code, 1);
 }
 
 TEST_F(AtlasPack, DataOfSeveralPagesSayThePageOfEachItem) {
   write("l.csv", "a,20,20\nb,20,20\nc,20,20\n");
   ASSERT_EQ(run("rects l.csv -o p.json --page 20x20").exit_code, 0);
-  const json all = json::parse(read("p.json"));
+  const Json all = Json::parse(read("p.json"));
   std::vector<int> pages{all["frames"]["a"]["page"], all["frames"]["b"]["page"],
                          all["frames"]["c"]["page"]};
   std::sort(pages.begin(), pages.end());
   EXPECT_EQ(pages, (std::vector<int>{0, 1, 2}));
-  EXPECT_EQ(all["meta"]["pages"], json::parse(R"([{"w":20,"h":20},{"w":20,"h":20},
+  EXPECT_EQ(all["meta"]["pages"], Json::parse(R"([{"w":20,"h":20},{"w":20,"h":20},
                                                   {"w":20,"h":20}])"));
 }
 
@@ -178,20 +178,20 @@ TEST_F(AtlasPack, SpritesOfAnyKindAreCutToWhatIsSeen) {
     const RunResult r = run("images in -o s --page 64 " + more);
     EXPECT_EQ(r.exit_code, 0) << r.output;
     EXPECT_TRUE(holds(r.output, "in/notes.txt: left out, no image by its ending")) << r.output;
-    return json::parse(read("s.json"))["frames"];
+    return Json::parse(read("s.json"))["frames"];
   };
-  const json cut = frames("");
+  const Json cut = frames("");
   ASSERT_EQ(cut.size(), 3u);
-  const json& s = cut["sub/seen.png"];
-  EXPECT_EQ(s["spriteSourceSize"], json::parse(R"({"x":3,"y":1,"w":3,"h":6})"));
-  EXPECT_EQ(s["sourceSize"], json::parse(R"({"w":9,"h":8})"));
+  const Json& s = cut["sub/seen.png"];
+  EXPECT_EQ(s["spriteSourceSize"], Json::parse(R"({"x":3,"y":1,"w":3,"h":6})"));
+  EXPECT_EQ(s["sourceSize"], Json::parse(R"({"w":9,"h":8})"));
   EXPECT_EQ(s["trimmed"], true);
   EXPECT_EQ(cut["grey.png"]["trimmed"], false);
   EXPECT_EQ(cut["none.png"]["frame"]["w"], 1);
-  EXPECT_EQ(cut["none.png"]["spriteSourceSize"], json::parse(R"({"x":0,"y":0,"w":1,"h":1})"));
+  EXPECT_EQ(cut["none.png"]["spriteSourceSize"], Json::parse(R"({"x":0,"y":0,"w":1,"h":1})"));
   const auto page = read_image8(dir_ / "s.png");
   ASSERT_TRUE(page.ok());
-  const json& g = cut["grey.png"]["frame"];
+  const Json& g = cut["grey.png"]["frame"];
   const std::uint8_t* texel = page->at(g["x"], page->height - 1 - int(g["y"]));
   EXPECT_EQ(std::vector<int>(texel, texel + 4), (std::vector<int>{77, 77, 77, 255}));
   texel = page->at(s["frame"]["x"], page->height - 1 - int(s["frame"]["y"]));
@@ -225,7 +225,7 @@ TEST_F(AtlasPack, CompanionFilesOfMacOsAreLeftOut) {
   const RunResult r = run("images in -o s");
   EXPECT_EQ(r.exit_code, 0) << r.output;
   EXPECT_TRUE(holds(r.output, "in/._a.png: left out, what macOS keeps beside a file")) << r.output;
-  EXPECT_EQ(json::parse(read("s.json"))["frames"].size(), 1u);
+  EXPECT_EQ(Json::parse(read("s.json"))["frames"].size(), 1u);
 }
 
 TEST_F(AtlasPack, SpritesOfOneLookAreStoredOnceAndPagesHoldTheirOwn) {
@@ -238,14 +238,14 @@ TEST_F(AtlasPack, SpritesOfOneLookAreStoredOnceAndPagesHoldTheirOwn) {
   ASSERT_EQ(r.exit_code, 0) << r.output;
   EXPECT_TRUE(holds(r.output, ": 3 items on 2 pages, 100.00 % used, 1 sharing another's place, "))
       << r.output;
-  const json first = json::parse(read("s-0.json")), second = json::parse(read("s-1.json"));
+  const Json first = Json::parse(read("s-0.json")), second = Json::parse(read("s-1.json"));
   EXPECT_EQ(first["frames"].size() + second["frames"].size(), 3u);
   EXPECT_EQ(first["meta"]["image"], "s-0.png");
   EXPECT_EQ(second["meta"]["image"], "s-1.png");
-  EXPECT_EQ(second["meta"]["size"], json::parse(R"({"w":20,"h":20})"));
+  EXPECT_EQ(second["meta"]["size"], Json::parse(R"({"w":20,"h":20})"));
   const RunResult each = run("images in -o s --page 20x20 --no-alias");
   EXPECT_TRUE(holds(each.output, ": 3 items on 3 pages, 100.00 % used, 0.")) << each.output;
-  EXPECT_EQ(json::parse(run("images in -o s --page 20x20 --json").output)["aliases"], 1);
+  EXPECT_EQ(Json::parse(run("images in -o s --page 20x20 --json").output)["aliases"], 1);
   const RunResult full = run("images in -o t --page 20x20 --max-pages 1");
   EXPECT_EQ(full.exit_code, 1);
   EXPECT_TRUE(holds(full.output, "in: 1 of 3 images have no room, first ")) << full.output;
