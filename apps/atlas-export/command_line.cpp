@@ -326,7 +326,7 @@ std::optional<ExportCommand> parse_export_command(int argc, char** argv, int& ex
     return std::nullopt;
   }
   for (int i = 0; i < argc; ++i) command.request.command += (i > 0 ? " " : "") + quoted(argv[i]);
-  command.request.options = option_values(app);
+  command.request.options = option_values(app, argc, argv);
   command.options.report_pictures =
       !command.plan_only && std::any_of(command.reports.begin(), command.reports.end(), is_page);
   // An OBJ that keeps the scene has the colours of its vertices as the scene's file has them,

@@ -260,12 +260,35 @@ int parse(CLI::App& app, int argc, char** argv) {
   return empty.empty() ? -1 : refuse(empty);
 }
 
-std::vector<std::pair<std::string, std::string>> option_values(const CLI::App& app) {
+namespace {
+
+// Returns the word that the command line gives for an option. CLI11 keeps what it becomes, such as
+// the number of an enumerator.
+std::string given_word(const CLI::Option& option, int argc, const char* const* argv) {
+  for (int i = argc - 1; i > 0; --i) {
+    const std::string word = argv[i];
+    const std::size_t equals = word.find('=');
+    if (!word.starts_with('-') || !option.check_name(word.substr(0, equals))) continue;
+    if (equals != std::string::npos) return word.substr(equals + 1);
+    if (i + 1 < argc) return argv[i + 1];
+  }
+  return CLI::detail::join(option.results(), " ");  // in a form of its own, such as -ofile
+}
+
+std::string value_of(const CLI::Option& option, int argc, const char* const* argv) {
+  if (option.get_expected_min() == 0) return "true";
+  const bool one = option.results().size() == 1 && !option.get_positional();
+  return one ? given_word(option, argc, argv) : CLI::detail::join(option.results(), " ");
+}
+
+}  // namespace
+
+std::vector<std::pair<std::string, std::string>> option_values(const CLI::App& app, int argc,
+                                                               const char* const* argv) {
   std::vector<std::pair<std::string, std::string>> values;
   for (const CLI::Option* option : app.get_options()) {
     std::string value = option->get_default_str();
-    if (option->count() > 0)
-      value = option->get_expected_min() == 0 ? "true" : CLI::detail::join(option->results(), " ");
+    if (option->count() > 0) value = value_of(*option, argc, argv);
     if (!value.empty()) values.emplace_back(option->get_name(), value);
   }
   return values;

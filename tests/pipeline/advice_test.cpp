@@ -355,7 +355,7 @@ TEST(Advice, OnlyNoiseThatTakesManyChartsIsNamed) {
     const auto report = export_world(scene, options, {}, {});
     ASSERT_TRUE(report.ok()) << report.status().message();
     const bool strong = noise > 0.4;
-    EXPECT_EQ(report->charts.size() > 20, strong) << report->charts.size();
+    EXPECT_EQ(report->charts.size() > 25, strong) << report->charts.size();
     EXPECT_EQ(report->advice.empty(), !strong) << noise;
     EXPECT_EQ(holds(report->advice, "rough as by scan noise"), strong);
   }

@@ -309,8 +309,6 @@ TEST(Export, PlainUvsOfADensityThatDoesNotFit) {
     EXPECT_GT(several->pages.size(), 3u);
     EXPECT_LT(several->pages.size(), 16u);
   }
-  options.texel_metres = 100;
-  EXPECT_EQ(export_world(scene, options, {}, {}).status().code(), ErrorCode::bad_option);
 }
 
 TEST(Export, PlainUvsOnSeveralPages) {

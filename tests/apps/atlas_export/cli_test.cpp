@@ -82,7 +82,7 @@ TEST_F(AtlasExport, ThePageOfProgramsExplainsEveryLineOfAStage) {
     EXPECT_NE(page.find(fmt::format("| `{}` |", stage)), page.npos) << line;
     ++stages;
   }
-  EXPECT_EQ(stages, 11);
+  EXPECT_EQ(stages, 12);
 }
 
 TEST_F(AtlasExport, GlbHoldsItsImages) {

@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
+#include <nlohmann/json.hpp>
 #include <string>
 
 #include "libatlas/image/image_io.h"
@@ -33,7 +34,9 @@ TEST_F(AtlasExport, DepfileListsAllThatWasRead) {
                                              "\\\n  {0}a\\ b.mtl \\\n  {0}wood.png\n",
                                              in));
   // It is no file of the world.
-  EXPECT_EQ(slurp(dir_ / "r.json").find("w.d"), std::string::npos);
+  const auto files = nlohmann::json::parse(slurp(dir_ / "r.json"))["files"];
+  EXPECT_FALSE(files.empty());
+  EXPECT_EQ(files.dump().find("w.d"), std::string::npos);
 }
 
 TEST_F(AtlasExport, DepfileIsAbsentIfTheExportFails) {
@@ -101,7 +104,8 @@ TEST_F(AtlasExport, AMissingModuleIsToldBeforeTheFirstStage) {
   std::string output(4096, ' ');
   output.resize(std::fread(output.data(), 1, output.size(), pipe));
   if (::pclose(pipe) == 0) GTEST_SKIP() << "the library is shared, its module lies elsewhere";
-  EXPECT_NE(output.find("w.wrl: image files other than PNG and JPEG need"), std::string::npos) << output;
+  EXPECT_NE(output.find("w.wrl: image files other than PNG and JPEG need"), std::string::npos)
+      << output;
   EXPECT_NE(output.find("reading "), std::string::npos) << output;
   for (const char* stage : {"exposure", "charts"})
     EXPECT_EQ(output.find(fmt::format("\n{} ", stage)), std::string::npos) << output;

@@ -120,7 +120,7 @@ TEST_F(AtlasExport, FalseColoursShowTheLightFromAbove) {
 
 TEST_F(AtlasExport, FalseColoursNeedLightAndAPng) {
   const fs::path scene = write("dark.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
-  expect_refusal(scene, "--false-colour", fmt::format("--false-colour {}/a.png", dir_.string()));
+  expect_refusal(scene, "--false-colour", fmt::format("-q --false-colour {}/a.png", dir_.string()));
   write("box.obj", lit_box(4));
   expect_refusal(dir_ / "box.obj", "--false-colour",
                  fmt::format("--false-colour {}/a.jpg", dir_.string()));
