@@ -129,7 +129,7 @@ TEST_F(AtlasPack, MeshChartsThatLieOnThemselvesFillThePage) {
   write("strip.obj", text);
   const RunResult r = run("mesh strip.obj --page 256 --padding 0 -o out.obj --json");
   ASSERT_EQ(r.exit_code, 0) << r.output;
-  const auto json = nlohmann::json::parse(r.output);
+  const auto json = nlohmann::json::parse(r.output.substr(r.output.find('{')));
   EXPECT_EQ(json["items"], 1);
   EXPECT_GT(json["utilization"], 0.9);
   EXPECT_LE(json["utilization"], 1.0);
