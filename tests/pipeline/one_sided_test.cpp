@@ -35,7 +35,7 @@ class Exported {
     options.target = folder_ / "w.gltf";
     options.simplify = simplify;
     options.packing = PackPreset::fast;
-    options.tone.white = 1;
+    options.tone.white = 60;
     const auto report = export_world(loaded, options, {}, {});
     EXPECT_TRUE(report.ok()) << report.status().message();
     if (!report.ok()) return;

@@ -162,7 +162,7 @@ class InTheBrowser(unittest.TestCase):
             pictures.append(page_file.read_png(self.page.screenshot()).texels)
             self.expect_silence(path)
         square = sum((a - b) ** 2 for a, b in zip(*pictures)) / len(pictures[0])
-        self.assertGreater(10 * math.log10(255 ** 2 / square), 42)
+        self.assertGreater(10 * math.log10(255 ** 2 / square), 38)
 
     def test_values_are_those_of_the_pages(self):
         self.open(self.linear)
