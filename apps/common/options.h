@@ -51,8 +51,8 @@ std::string with_flags(std::string_view text, std::span<const FlagName> names);
 // the program should end: 0 after the help or the version, 2 after one line about what is wrong.
 int parse(CLI::App& app, int argc, char** argv);
 
-// Returns the options that were given, with their values as in the command line, and the others that
-// have a default; flags are "true".
+// Returns the options that were given, with their values as in the command line, and the others
+// that have a default; flags are "true".
 std::vector<std::pair<std::string, std::string>> option_values(const CLI::App& app, int argc,
                                                                const char* const* argv);
 

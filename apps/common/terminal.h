@@ -20,8 +20,8 @@ class Terminal {
   Terminal(const Terminal&) = delete;
   Terminal& operator=(const Terminal&) = delete;
 
-  // Returns a context with this terminal's progress, warnings (to stderr, always) and cancel flag; it
-  // must not outlive the terminal.
+  // Returns a context with this terminal's progress, warnings (to stderr, always) and cancel flag;
+  // it must not outlive the terminal.
   Context context(int threads);
 
   // Sets the function that rewords warnings and errors of the library for the program's users.

@@ -1,9 +1,10 @@
 // Reads and writes image files. Rows are bottom-up in memory (core/image.h), and their order is
-// reversed here. The first call for a file that is neither PNG nor JPEG loads a module that does the
-// work; without the module, such calls return ErrorCode::unsupported. Other errors: not_found, io (the file is no image or is damaged),
-// bad_input (the file claims a larger image than it can hold; the image to write is not as large as
-// its sides say), unsupported (the image takes more than 4 GiB or is a volume), bad_option. Every
-// function may be called from several threads at once.
+// reversed here. The first call for a file that is neither PNG nor JPEG loads a module that does
+// the work; without the module, such calls return ErrorCode::unsupported. Other errors: not_found,
+// io (the file is no image or is damaged), bad_input (the file claims a larger image than it can
+// hold; the image to write is not as large as its sides say), unsupported (the image takes more
+// than 4 GiB or is a volume), bad_option. Every function may be called from several threads at
+// once.
 #pragma once
 
 #include <cstdint>
@@ -21,10 +22,10 @@ namespace atlas {
 Status check_image_module(const std::string& name);
 
 // Reads any format that OpenImageIO supports as 8-bit values, with all channels and without colour
-// conversion (an sRGB file stays sRGB-encoded), except that CMYK becomes RGB. Colours are not multiplied by alpha: those that a
-// TIFF says are so, and all of OpenEXR files with an alpha as their last channel, are divided by
-// it, except where it is 0. Of OpenEXR files, the display window is read; texels of it that the
-// file does not hold are 0.
+// conversion (an sRGB file stays sRGB-encoded), except that CMYK becomes RGB. Colours are not
+// multiplied by alpha: those that a TIFF says are so, and all of OpenEXR files with an alpha as
+// their last channel, are divided by it, except where it is 0. Of OpenEXR files, the display window
+// is read; texels of it that the file does not hold are 0.
 Result<Image8> read_image8(const std::filesystem::path& path);
 
 // The same for an encoded file (PNG, JPEG or WebP) in memory. Its bytes tell the format; `name` is

@@ -98,9 +98,8 @@ Result<ReportPictures> report_pictures(const PagesToShow& pages, const Context& 
     const auto bytes = read_file_bytes(pages.images[p]);
     if (!bytes.ok()) return bytes.status();
     const std::string_view text = bytes->text();
-    auto image =
-        decode_image8({reinterpret_cast<const std::uint8_t*>(text.data()), text.size()},
-                      pages.images[p].string());
+    auto image = decode_image8({reinterpret_cast<const std::uint8_t*>(text.data()), text.size()},
+                               pages.images[p].string());
     if (!image.ok()) return image.status();
     for (std::size_t i = 0; i < pages.worst.size(); ++i)
       if (std::size_t(pages.worst[i].page) == p)

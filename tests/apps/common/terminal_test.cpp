@@ -107,8 +107,7 @@ TEST(ProgressBar, IsForTerminalsOnlyAndNotForQuietPrograms) {
     };
   };
   EXPECT_EQ(shown(Stream::pipe, work(false)).text, "prog: said\ntold\nprog: error: wrong\n");
-  EXPECT_EQ(shown(Stream::terminal, work(true)).text,
-            "prog: said\r\nprog: error: wrong\r\n");
+  EXPECT_EQ(shown(Stream::terminal, work(true)).text, "prog: said\r\nprog: error: wrong\r\n");
 }
 
 TEST(Terminal, RewordsWarningsAndErrorsButNotLines) {
