@@ -48,6 +48,7 @@ MeshView view_of(const Scene& scene) {
   view.materials = scene.triangle_material;
   view.texcoords = scene.texcoords;
   view.texcoord_indices = scene.texcoord_indices;
+  view.polygons = scene.polygons.polygon;
   return view;
 }
 
@@ -101,6 +102,10 @@ class Export {
       for (std::string& line : advice_on_materials(scene_, options_.quantity))
         report_.advice.push_back(std::move(line));
     }
+    if (report_.cut_polygons > 0)
+      report_.advice.push_back(fmt::format(
+          "{} of {} faces do not lie flat in one piece, and are written as triangles",
+          report_.cut_polygons, scene_.polygons.count()));
     if (report_.thin_triangles > 0)
       report_.advice.push_back(thin_triangles_text(report_.thin_triangles, report_.triangles_out));
     for (const std::string& line : report_.advice) context_.say(line);

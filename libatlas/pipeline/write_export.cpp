@@ -131,6 +131,8 @@ World make_world(ExportToWrite& made, ExportReport& report, const Context& conte
   World world = assemble_world(made.scene, placed, made.mesh, std::move(made.uvs));
   if (!made.baked) {
     world.info.push_back(plain_pages_text(made.layout.pages, options.udim));
+    if (options.polygons && made.scene.polygons.count() > 0)
+      report.cut_polygons = take_polygons(made.scene, placed, world);
     if (options.udim) make_tiles(placed, world);
   } else {
     const std::vector<Extent>& pages = made.layout.pages;
