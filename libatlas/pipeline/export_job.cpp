@@ -29,6 +29,7 @@ MeshView view_of(const Scene& scene) {
   view.materials = scene.triangle_material;
   view.texcoords = scene.texcoords;
   view.texcoord_indices = scene.texcoord_indices;
+  view.polygons = scene.polygons.polygon;
   return view;
 }
 

@@ -164,13 +164,15 @@ void add_lightmap(const ExportJob& job, const ExportToWrite& made, World& world)
   world.info.push_back(lightmap_text(*world.lightmap));
 }
 
-World make_world(const ExportJob& job, ExportToWrite& made, const Context& context) {
+World make_world(ExportJob& job, ExportToWrite& made, const Context& context) {
   const ExportOptions& options = job.options;
   const ChartSet& charts = made.packed.charts;
   const PageLayout& layout = made.packed.layout;
   const PlacedCharts placed{charts, layout.placements, layout.pages};
   World world = assemble_world(job.scene, placed, made.mesh, std::move(made.uvs));
   add_page_texts(options, layout.pages, made.light, world);
+  if (!made.light && options.polygons && job.scene.polygons.count() > 0)
+    job.report.cut_polygons = take_polygons(job.scene, placed, world);
   if (!made.light && options.udim) make_tiles(placed, world);
   world.up = options.up;
   world.title = options.target.stem().string();
