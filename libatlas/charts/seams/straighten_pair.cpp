@@ -207,7 +207,9 @@ class PairStraightener {
     if (o == kNoIndex) return;
     const bool within = in_band(o / 3);
     if (within && o < h) return;  // added once for both directions
-    const std::int32_t w = steps(border_weight(topology_, h, crease_cosine_) / unit);
+    const std::int32_t w = topology_.inner(h)
+                               ? MinCut::kForever
+                               : steps(border_weight(topology_, h, crease_cosine_) / unit);
     if (within) {
       cut_.set_edge({i, h % 3}, {places_[o / 3] - first_, o % 3}, w);
     } else if (const std::uint32_t there = side(o / 3); there < 2) {

@@ -267,7 +267,7 @@ Status write_images(TextFile& file, const World& world) {
 Result<WorldFile> write_html(const World& world, const fs::path& path, AtomicFiles& files,
                              const Context& context) {
   if (Status s = check_world(world); !s.ok()) return s;
-  if (Status s = check_no_tiles(world); !s.ok()) return s;
+  if (Status s = check_only_triangles(world); !s.ok()) return s;
   if (world.scene != nullptr)
     return Status(ErrorCode::bad_option, path.string() +
                                              ": a page of HTML shows pages of light, and cannot "
