@@ -106,6 +106,10 @@ class Call {
     return new type(this.instance.u8.slice(start, start + count * type.BYTES_PER_ELEMENT).buffer);
   }
 
+  version() {
+    return this.#exports.libatlas_version();
+  }
+
   // Calls a function of atlas.h that returns a status.
   check(name, ...rest) {
     const status = this.#exports[`libatlas_${name}`](this.context, ...rest);

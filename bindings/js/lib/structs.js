@@ -21,7 +21,8 @@ function struct(members) {
 export const structs = {
   mesh: struct(`size size; pointer positions; size position_count position_stride; pointer indices;
     size index_count index_bytes; pointer normals; size normal_stride; pointer texcoords;
-    size texcoord_count texcoord_stride; pointer texcoord_indices materials seams triangle_density; f32 density`),
+    size texcoord_count texcoord_stride; pointer texcoord_indices materials seams triangle_density; f32 density;
+    pointer polygon_sizes; size polygon_count`),
   unwrap_options: struct(`size size; f64 max_stretch cone_degrees crease_degrees min_fill uv_aspect texels_per_unit;
     u32 pages; i32 page_size padding mip_levels alignment charts packing split_at_materials keep_uvs allow_rotation
     square part_gaps`),
@@ -29,6 +30,8 @@ export const structs = {
     stretch_l2 stretch_999 stretch_max conformal_mean seam_length surface_area; u64 flipped_triangles thin_triangles
     texels_drawn_twice kept_charts reflattened_charts`),
   mesh_uvs: struct(`size size vertex_count triangle_count; pointer vertices uvs indices triangle_page triangle_chart`),
+  polygon_uvs: struct(`size size polygon_count corner_count; pointer corners triangle_polygon; size cut_count;
+    pointer cut_polygons`),
   charts: struct(`size size chart_count; pointer mesh page material triangle_count kept area stretch_l2 stretch_999
     stretch_max`),
   pack_options: struct(`size size; i32 page_width page_height; u32 max_pages; i32 allow_rotation padding border
