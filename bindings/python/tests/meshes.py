@@ -44,8 +44,7 @@ def terrain(n: int = 40, seed: int = 1):
     x, y = np.mgrid[:n, :n] / n
     rng = np.random.default_rng(seed)
     height = sum(
-        rng.normal(0, 0.4 / f) * np.sin(2 * np.pi * (f * x * rng.normal() + f * y * rng.normal()))
-        for f in (1, 2, 4, 7)
+        rng.normal(0, 0.4 / f) * np.sin(2 * np.pi * (f * x * rng.normal() + f * y * rng.normal())) for f in (1, 2, 4, 7)
     )
     vertices = np.stack([x, y, height], -1).reshape(-1, 3)
     k = (np.arange(n - 1)[:, None] * n + np.arange(n - 1)).ravel()

@@ -31,7 +31,8 @@ void write(std::ofstream& file, const std::vector<T>& values) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  if (argc != 5) return std::fputs("usage: reference POSITIONS INDICES RESULT PAGE_SIZE\n", stderr), 2;
+  if (argc != 5)
+    return std::fputs("usage: reference POSITIONS INDICES RESULT PAGE_SIZE\n", stderr), 2;
   const auto positions = read<atlas::Vec3f>(argv[1]);
   const auto indices = read<std::uint32_t>(argv[2]);
   atlas::MeshView mesh;

@@ -96,9 +96,7 @@ def test_ctrl_c_ends_a_program():
     )
     paths = [os.path.dirname(__file__), str(Path(libatlas.__file__).parents[1])]
     environment = dict(os.environ, PYTHONPATH=os.pathsep.join(paths))
-    with subprocess.Popen(
-        [sys.executable, "-c", program], env=environment, stdout=-1, stderr=-1, text=True
-    ) as process:
+    with subprocess.Popen([sys.executable, "-c", program], env=environment, stdout=-1, stderr=-1, text=True) as process:
         assert process.stdout.readline() == "ready\n"
         time.sleep(0.3)
         process.send_signal(signal.SIGINT)

@@ -39,7 +39,7 @@ def test_members_lie_where_the_compiler_puts_them(tmp_path):
     compiler = shutil.which(os.environ.get("CC", "cc"))
     if compiler is None:
         pytest.skip("needs a C compiler")
-    lines = ['#include <stdio.h>', f'#include "{HEADER}"', "int main(void) {"]
+    lines = ["#include <stdio.h>", f'#include "{HEADER}"', "int main(void) {"]
     expected = []
     for name, struct in _structs.STRUCTS.items():
         lines.append(f'  printf("%zu\\n", sizeof({name}));')

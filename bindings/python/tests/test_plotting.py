@@ -6,6 +6,7 @@ from libatlas._plotting import chart_colours
 from libatlas._raster import covered_texels
 from meshes import box, torus
 
+
 def axes():
     matplotlib = pytest.importorskip("matplotlib")
     matplotlib.use("Agg")

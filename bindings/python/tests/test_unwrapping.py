@@ -190,9 +190,7 @@ def test_progress_comes_in_the_callers_thread_and_rises():
     import threading
 
     seen = []
-    libatlas.unwrap(
-        *MADE["fine torus"], progress=lambda *report: seen.append((threading.get_ident(), *report))
-    )
+    libatlas.unwrap(*MADE["fine torus"], progress=lambda *report: seen.append((threading.get_ident(), *report)))
     assert {thread for thread, _, _ in seen} == {threading.get_ident()}
     stages = list(dict.fromkeys(stage for _, stage, _ in seen))
     assert stages == ["charts", "packing"]

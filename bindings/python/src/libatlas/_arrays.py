@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any, Optional
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -26,7 +26,7 @@ class View:
         }
 
 
-def view(address: Optional[int], shape: tuple[int, ...], kind: Any, owner: Handle) -> npt.NDArray[Any]:
+def view(address: int | None, shape: tuple[int, ...], kind: Any, owner: Handle) -> npt.NDArray[Any]:
     """A read-only array that looks into `owner`'s memory, without a copy."""
     if not address or 0 in shape:
         empty = np.empty(shape, kind)
@@ -47,18 +47,14 @@ def _as_array(value: Any, name: str, kinds: str, wanted: str) -> npt.NDArray[Any
     return array
 
 
-def _check_shape(array: npt.NDArray[Any], shape: tuple[Optional[int], ...], name: str) -> None:
-    fits = array.ndim == len(shape) and all(
-        wanted in (None, size) for wanted, size in zip(shape, array.shape)
-    )
+def _check_shape(array: npt.NDArray[Any], shape: tuple[int | None, ...], name: str) -> None:
+    fits = array.ndim == len(shape) and all(wanted in (None, size) for wanted, size in zip(shape, array.shape))
     if not fits:
         wanted = ", ".join("N" if size is None else str(size) for size in shape)
         raise InputError(f"{name}: shape is {array.shape}, but ({wanted}) is needed")
 
 
-def floats(
-    value: Any, shape: tuple[Optional[int], ...], name: str, *, flat: bool = False
-) -> npt.NDArray[np.float32]:
+def floats(value: Any, shape: tuple[int | None, ...], name: str, *, flat: bool = False) -> npt.NDArray[np.float32]:
     """Floats of 32 bits. Rows may be any distance apart unless `flat`; each is without gaps.
 
     Nothing is copied that has this form already.
@@ -75,9 +71,7 @@ def floats(
     return np.ascontiguousarray(array)
 
 
-def indices(
-    value: Any, shape: tuple[Optional[int], ...], name: str, wide: bool = False
-) -> npt.NDArray[Any]:
+def indices(value: Any, shape: tuple[int | None, ...], name: str, wide: bool = False) -> npt.NDArray[Any]:
     """Indices without gaps, of 32 bits, or of 16 if they are so already and not `wide`."""
     array = _as_array(value, name, "iu", "integers")
     _check_shape(array, shape, name)
@@ -91,7 +85,7 @@ def indices(
     return np.ascontiguousarray(array)
 
 
-def flags(value: Any, shape: tuple[Optional[int], ...], name: str) -> npt.NDArray[np.uint8]:
+def flags(value: Any, shape: tuple[int | None, ...], name: str) -> npt.NDArray[np.uint8]:
     array = _as_array(value, name, "biu", "booleans or integers")
     _check_shape(array, shape, name)
     return np.ascontiguousarray(array != 0).view(np.uint8)

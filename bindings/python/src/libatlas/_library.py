@@ -11,7 +11,7 @@ import warnings
 from collections.abc import Callable
 from ctypes import POINTER, c_char_p, c_double, c_int, c_int32, c_size_t, c_uint32, c_void_p
 from pathlib import Path
-from typing import Any, Optional
+from typing import Any
 
 from libatlas import _structs as structs
 from libatlas.errors import BY_STATUS, InternalError, RepairWarning
@@ -134,7 +134,7 @@ class Context:
     Ctrl-C, or what `progress` raises) cancels the call.
     """
 
-    def __init__(self, threads: int = 0, progress: Optional[Progress] = None) -> None:
+    def __init__(self, threads: int = 0, progress: Progress | None = None) -> None:
         self._handle = Handle("context")
         self._handle.pointer = c_void_p(library.libatlas_context_create())
         if not self._handle.pointer:
@@ -189,7 +189,12 @@ class _Run:
     def __init__(self, context: Context, function: Any, arguments: tuple[Any, ...], keep: Any) -> None:
         self._context, self._function, self._arguments, self._keep = context, function, arguments, keep
         self._reports = reports = queue.SimpleQueue()  # type: queue.SimpleQueue[Any]
-        self.on_progress = _PROGRESS(lambda _, stage, fraction: reports.put((stage, fraction)) or 0)
+
+        def report(_: Any, stage: bytes, fraction: float) -> int:
+            reports.put((stage, fraction))
+            return 0
+
+        self.on_progress = _PROGRESS(report)
         self._lock = threading.Lock()
         self._abandoned = False
         self._running = False
@@ -207,7 +212,7 @@ class _Run:
             self._reports.put(status)
             self._done.set()
 
-    def wait(self, progress: Optional[Progress]) -> int:
+    def wait(self, progress: Progress | None) -> int:
         """Returns the status of the call. Of reports that pile up, only the last of a stage counts."""
         report = None
         while True:

@@ -7,7 +7,8 @@ import operator
 from typing import Any, Literal, TypedDict
 
 from libatlas._library import library
-from libatlas._structs import Extent, UnwrapOptions as _UnwrapOptions
+from libatlas._structs import Extent
+from libatlas._structs import UnwrapOptions as _UnwrapOptions
 from libatlas.errors import BY_STATUS, OptionError
 
 Preset = Literal["fast", "standard", "best"]

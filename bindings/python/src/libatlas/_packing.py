@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import ctypes
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Optional
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import numpy.typing as npt
 
-from libatlas import _arrays as arrays, _options, _structs as structs
+from libatlas import _arrays as arrays
+from libatlas import _options
+from libatlas import _structs as structs
 from libatlas._library import Context, Handle, Progress, library
 
 if TYPE_CHECKING:
@@ -58,7 +60,7 @@ def pack_rects(
     sizes: npt.ArrayLike,
     *,
     threads: int = 0,
-    progress: Optional[Progress] = None,
+    progress: Progress | None = None,
     **options: Unpack[PackOptions],
 ) -> PackedRects:
     """Packs rectangles onto pages. Those for which there is no room are not placed, which is no error.
@@ -100,7 +102,7 @@ def pack_islands(
     faces: npt.ArrayLike,
     *,
     threads: int = 0,
-    progress: Optional[Progress] = None,
+    progress: Progress | None = None,
     **options: Unpack[IslandOptions],
 ) -> PackedIslands:
     """Moves, turns and scales the islands of given uvs by one factor, so that none lies on another.

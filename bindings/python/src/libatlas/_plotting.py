@@ -2,15 +2,13 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, Optional, Union
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
+from libatlas._unwrapping import UnwrappedAtlas, UnwrappedMesh
 from libatlas.errors import InputError
-
-if TYPE_CHECKING:
-    from libatlas._unwrapping import UnwrappedAtlas, UnwrappedMesh
 
 
 def chart_colours(count: int) -> npt.NDArray[np.float64]:
@@ -18,10 +16,11 @@ def chart_colours(count: int) -> npt.NDArray[np.float64]:
     hue = np.arange(count) * 0.6180339887 % 1
     light = 0.72 + 0.2 * (np.arange(count) % 3 - 1)
     wheel = np.abs((hue[:, None] * 6 + np.array([0, 4, 2])) % 6 - 3) - 1
-    return np.clip(wheel, 0, 1) * 0.55 * light[:, None] + 0.4 * light[:, None]
+    colours: npt.NDArray[np.float64] = np.clip(wheel, 0, 1) * 0.55 * light[:, None] + 0.4 * light[:, None]
+    return colours
 
 
-def plot(unwrapped: Union[UnwrappedMesh, UnwrappedAtlas], *, page: int = 0, axes: Optional[Any] = None) -> Any:
+def plot(unwrapped: UnwrappedMesh | UnwrappedAtlas, *, page: int = 0, axes: Any | None = None) -> Any:
     """Draws the charts of a page, each in a colour of its own. Needs matplotlib.
 
     Args:
@@ -39,7 +38,7 @@ def plot(unwrapped: Union[UnwrappedMesh, UnwrappedAtlas], *, page: int = 0, axes
     from matplotlib import pyplot
     from matplotlib.collections import PolyCollection
 
-    meshes = list(unwrapped) if hasattr(unwrapped, "__len__") else [unwrapped]
+    meshes = list(unwrapped) if isinstance(unwrapped, UnwrappedAtlas) else [unwrapped]
     pages = unwrapped.pages
     if not 0 <= page < len(pages):
         raise InputError(f"page {page}: there are {len(pages)} (counted from 0)")

@@ -31,8 +31,9 @@ def covered_texels(
         triangle, y = _expand(first[begin:end], rows[begin:end])
         triangle += begin
         low, high = _spans(c[triangle], y)
-        low = np.clip(np.ceil(low), 0, width).astype(np.int64)
-        row, x = _expand(low, np.maximum(np.clip(np.floor(high) + 1, 0, width).astype(np.int64) - low, 0))
+        left = np.clip(np.ceil(low), 0, width).astype(np.int64)
+        right = np.clip(np.floor(high) + 1, 0, width).astype(np.int64)
+        row, x = _expand(left, np.maximum(right - left, 0))
         yield triangle[row], x, y[row]
         begin = end
 

@@ -6,12 +6,14 @@ import ctypes
 import threading
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Optional, overload
+from typing import TYPE_CHECKING, Any, overload
 
 import numpy as np
 import numpy.typing as npt
 
-from libatlas import _arrays as arrays, _options, _structs as structs
+from libatlas import _arrays as arrays
+from libatlas import _options
+from libatlas import _structs as structs
 from libatlas._library import Context, Handle, Progress, library
 from libatlas.errors import InputError
 
@@ -201,12 +203,12 @@ class Atlas:
         vertices: npt.ArrayLike,
         faces: npt.ArrayLike,
         *,
-        normals: Optional[npt.ArrayLike] = None,
-        uvs: Optional[npt.ArrayLike] = None,
-        uv_faces: Optional[npt.ArrayLike] = None,
-        materials: Optional[npt.ArrayLike] = None,
-        seams: Optional[npt.ArrayLike] = None,
-        triangle_density: Optional[npt.ArrayLike] = None,
+        normals: npt.ArrayLike | None = None,
+        uvs: npt.ArrayLike | None = None,
+        uv_faces: npt.ArrayLike | None = None,
+        materials: npt.ArrayLike | None = None,
+        seams: npt.ArrayLike | None = None,
+        triangle_density: npt.ArrayLike | None = None,
         density: float = 1,
     ) -> int:
         """Adds a copy of a mesh, and returns its number, counted from 0.
@@ -258,7 +260,7 @@ class Atlas:
         self,
         *,
         threads: int = 0,
-        progress: Optional[Progress] = None,
+        progress: Progress | None = None,
         **options: Unpack[UnwrapOptions],
     ) -> UnwrappedAtlas:
         """Unwraps all meshes. May be called again, with other options.
@@ -287,9 +289,7 @@ class Atlas:
         return UnwrappedAtlas(handle, self)
 
 
-def _fill_mesh(
-    mesh: structs.Mesh, vertices: Any, faces: Any, wide: bool, density: Any
-) -> list[npt.NDArray[Any]]:
+def _fill_mesh(mesh: structs.Mesh, vertices: Any, faces: Any, wide: bool, density: Any) -> list[npt.NDArray[Any]]:
     """Returns what must live as long as `mesh`. `wide`: indices get 32 bits."""
     library.libatlas_mesh_init(mesh, ctypes.sizeof(mesh))
     positions = arrays.floats(vertices, (None, 3), "vertices")
@@ -318,14 +318,14 @@ def unwrap(
     vertices: npt.ArrayLike,
     faces: npt.ArrayLike,
     *,
-    normals: Optional[npt.ArrayLike] = None,
-    uvs: Optional[npt.ArrayLike] = None,
-    uv_faces: Optional[npt.ArrayLike] = None,
-    materials: Optional[npt.ArrayLike] = None,
-    seams: Optional[npt.ArrayLike] = None,
-    triangle_density: Optional[npt.ArrayLike] = None,
+    normals: npt.ArrayLike | None = None,
+    uvs: npt.ArrayLike | None = None,
+    uv_faces: npt.ArrayLike | None = None,
+    materials: npt.ArrayLike | None = None,
+    seams: npt.ArrayLike | None = None,
+    triangle_density: npt.ArrayLike | None = None,
     threads: int = 0,
-    progress: Optional[Progress] = None,
+    progress: Progress | None = None,
     **options: Unpack[UnwrapOptions],
 ) -> UnwrappedMesh:
     """Unwraps one mesh: `vmapping, faces, uvs = unwrap(vertices, faces)`.

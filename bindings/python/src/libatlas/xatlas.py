@@ -13,7 +13,7 @@ from __future__ import annotations
 import enum
 import os
 import warnings
-from typing import Any, Optional, Union
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -148,8 +148,8 @@ class Atlas:
         self,
         positions: npt.ArrayLike,
         indices: npt.ArrayLike,
-        normals: Optional[npt.ArrayLike] = None,
-        uvs: Optional[npt.ArrayLike] = None,
+        normals: npt.ArrayLike | None = None,
+        uvs: npt.ArrayLike | None = None,
     ) -> None:
         """Adds a copy of a mesh: positions (V, 3), indices (F, 3), normals (V, 3), uvs (V, 2).
 
@@ -167,7 +167,7 @@ class Atlas:
         self._given.append(mesh)
 
     def add_uv_mesh(
-        self, uvs: npt.ArrayLike, indices: npt.ArrayLike, face_materials: Optional[npt.ArrayLike] = None
+        self, uvs: npt.ArrayLike, indices: npt.ArrayLike, face_materials: npt.ArrayLike | None = None
     ) -> None:
         """Adds uvs (V, 2) whose islands are to be packed, indices (F, 3), materials (F,)."""
         if self._given:
@@ -182,8 +182,8 @@ class Atlas:
 
     def generate(
         self,
-        chart_options: Optional[ChartOptions] = None,
-        pack_options: Optional[PackOptions] = None,
+        chart_options: ChartOptions | None = None,
+        pack_options: PackOptions | None = None,
         verbose: bool = False,
     ) -> None:
         """Makes charts and packs them, or packs the islands of uv meshes. `verbose` prints the progress."""
@@ -225,7 +225,7 @@ class Atlas:
             self._meshes.append(_Mesh(arrays, packed.island_page[island], island, material))
         self._finish(packed, packed.texels_per_uv)
 
-    def _finish(self, result: Union[libatlas.UnwrappedAtlas, libatlas.PackedIslands], density: float) -> None:
+    def _finish(self, result: libatlas.UnwrappedAtlas | libatlas.PackedIslands, density: float) -> None:
         self._pages = np.array(result.pages)
         self._utilization, self._texels_per_unit = result.utilization, density
 
@@ -245,9 +245,7 @@ class Atlas:
         mesh = self._mesh(mesh_index)
         return mesh.vmapping, mesh.faces, mesh.uvs
 
-    def get_mesh_vertex_assignment(
-        self, mesh_index: int
-    ) -> tuple[npt.NDArray[np.uint32], npt.NDArray[np.uint32]]:
+    def get_mesh_vertex_assignment(self, mesh_index: int) -> tuple[npt.NDArray[np.uint32], npt.NDArray[np.uint32]]:
         """For each vertex of the result its page and its chart, which is counted in its mesh."""
         mesh = self._mesh(mesh_index)
         page, chart = np.zeros((2, len(mesh.vmapping)), np.uint32)
@@ -328,8 +326,8 @@ class Atlas:
 def parametrize(
     positions: npt.ArrayLike,
     indices: npt.ArrayLike,
-    normals: Optional[npt.ArrayLike] = None,
-    uvs: Optional[npt.ArrayLike] = None,
+    normals: npt.ArrayLike | None = None,
+    uvs: npt.ArrayLike | None = None,
 ) -> _MeshArrays:
     """vmapping (N,), indices (F, 3) and uvs (N, 2) of one mesh, with the default options."""
     atlas = Atlas()
@@ -339,11 +337,11 @@ def parametrize(
 
 
 def export(
-    path: Union[str, os.PathLike[str]],
+    path: str | os.PathLike[str],
     positions: npt.ArrayLike,
-    indices: Optional[npt.ArrayLike] = None,
-    uvs: Optional[npt.ArrayLike] = None,
-    normals: Optional[npt.ArrayLike] = None,
+    indices: npt.ArrayLike | None = None,
+    uvs: npt.ArrayLike | None = None,
+    normals: npt.ArrayLike | None = None,
 ) -> None:
     """Writes an OBJ file: positions (V, 3), indices (F, 3), uvs (V, 2), normals (V, 3)."""
     blocks = [("v", _array(positions, 3, "Position"))]
