@@ -18,7 +18,8 @@ test_packages="
   libgtest-dev libbenchmark-dev libcgal-dev libcoin-dev xvfb xauth pngcheck gnuplot-nox valgrind
   libgl1-mesa-dri libegl1 abigail-tools python3"
 # Not every release has these. Tests that need them are skipped there.
-test_packages_if_any="view3dscene chromium python3-websocket"
+test_packages_if_any="view3dscene chromium python3-websocket
+  python3-numpy python3-pytest python3-matplotlib"
 
 case "${1:-all}" in
   build) wanted="$build_packages" if_any="" ;;
