@@ -103,9 +103,9 @@ class Export {
         report_.advice.push_back(std::move(line));
     }
     if (report_.cut_polygons > 0)
-      report_.advice.push_back(fmt::format(
-          "{} of {} faces do not lie flat in one piece, and are written as triangles",
-          report_.cut_polygons, scene_.polygons.count()));
+      report_.advice.push_back(
+          fmt::format("{} of {} faces do not lie flat in one piece, and are written as triangles",
+                      report_.cut_polygons, scene_.polygons.count()));
     if (report_.thin_triangles > 0)
       report_.advice.push_back(thin_triangles_text(report_.thin_triangles, report_.triangles_out));
     for (const std::string& line : report_.advice) context_.say(line);
