@@ -137,8 +137,8 @@ LIBATLAS_API void libatlas_atlas_destroy(libatlas_atlas* atlas);
 
 // Adds a copy of a mesh. Meshes are numbered from 0 and never joined to each other, also where they
 // touch. `number` may be null. Status: BAD_INPUT with the mesh and the triangle or polygon;
-// BAD_OPTION for the size of the struct; UNSUPPORTED beyond 2^30 triangles or 2^32 positions in all,
-// or for an outline too intricate to be cut into triangles.
+// BAD_OPTION for the size of the struct; UNSUPPORTED beyond 2^30 triangles or 2^32 positions in
+// all, or for an outline too intricate to be cut into triangles.
 LIBATLAS_API libatlas_status libatlas_add_mesh(libatlas_context* context, libatlas_atlas* atlas,
                                                const libatlas_mesh* mesh, uint32_t* number);
 
@@ -182,10 +182,10 @@ LIBATLAS_API libatlas_status libatlas_lightmap_options_init(libatlas_unwrap_opti
 typedef struct libatlas_unwrapped libatlas_unwrapped;
 
 // Unwraps all meshes of an atlas; `options` may be null. Nothing is left out: triangle t of a mesh
-// is triangle t of its result, with its corners in the same order; of polygons each has its size - 2
-// triangles, one polygon after the other. May be called again, with other
-// options. Status: BAD_INPUT without a mesh, BAD_OPTION, NO_SOLUTION (more charts than the pages
-// hold texels for), CANCELLED.
+// is triangle t of its result, with its corners in the same order; of polygons each has its size -
+// 2 triangles, one polygon after the other. May be called again, with other options. Status:
+// BAD_INPUT without a mesh, BAD_OPTION, NO_SOLUTION (more charts than the pages hold texels for),
+// CANCELLED.
 LIBATLAS_API libatlas_status libatlas_unwrap(libatlas_context* context, const libatlas_atlas* atlas,
                                              const libatlas_unwrap_options* options,
                                              libatlas_unwrapped** unwrapped);
@@ -229,12 +229,13 @@ LIBATLAS_API libatlas_status libatlas_get_mesh(libatlas_context* context,
                                                libatlas_mesh_uvs* uvs);
 
 // Uvs of a mesh of polygons, one per corner. No seam runs inside a polygon, except in those listed
-// as cut: they do not lie flat in one piece within the bounds of the options, or given uvs cut them.
-// `corners` has one part of these only; they can be drawn as their triangles.
+// as cut: they do not lie flat in one piece within the bounds of the options, or given uvs cut
+// them. `corners` has one part of these only; they can be drawn as their triangles.
 typedef struct libatlas_polygon_uvs {
   size_t size;
   size_t polygon_count, corner_count;  // 0 of a mesh of triangles
-  const uint32_t* corners;  // 1 a corner, in the mesh's order: into the vertices of libatlas_mesh_uvs
+  const uint32_t*
+      corners;  // 1 a corner, in the mesh's order: into the vertices of libatlas_mesh_uvs
   const uint32_t* triangle_polygon;  // 1 a triangle of libatlas_mesh_uvs
   size_t cut_count;
   const uint32_t* cut_polygons;  // ascending
