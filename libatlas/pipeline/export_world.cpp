@@ -85,9 +85,9 @@ void advise(ExportJob& job) {
     if (!job.options.keep_scene) add(advice_on_materials(job.scene, job.options.quantity));
   }
   if (report.cut_polygons > 0)
-    report.advice.push_back(fmt::format(
-        "{} of {} faces do not lie flat in one piece, and are written as triangles",
-        report.cut_polygons, job.scene.polygons.count()));
+    report.advice.push_back(
+        fmt::format("{} of {} faces do not lie flat in one piece, and are written as triangles",
+                    report.cut_polygons, job.scene.polygons.count()));
   if (report.thin_triangles > 0)
     report.advice.push_back(thin_triangles_text(report.thin_triangles, report.triangles_out));
   for (const std::string& line : report.advice) job.context.say(line);
