@@ -12,7 +12,7 @@
 #include "apps/common/program.h"
 #include "apps/common/quantity.h"
 #include "libatlas/core/counted.h"
-#include "libatlas/core/file_extension.h"
+#include "libatlas/files/file_extension.h"
 #include "libatlas/image/webp.h"
 
 namespace atlas::app {
