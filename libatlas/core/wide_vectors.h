@@ -5,15 +5,21 @@
 namespace atlas {
 
 // Every 64-bit processor handles it in one instruction. It is aligned to 16 bytes, like the memory
-// that std::vector allocates.
-using Pair = double __attribute__((vector_size(16), may_alias));
-static_assert(__STDCPP_DEFAULT_NEW_ALIGNMENT__ >= sizeof(Pair));
+// that std::vector allocates; WebAssembly's memory is not, and need not be.
+#ifdef __wasm__
+#define ATLAS_PAIR_ALIGNMENT 8
+#else
+#define ATLAS_PAIR_ALIGNMENT 16
+#endif
+using Pair = double __attribute__((vector_size(16), may_alias, aligned(ATLAS_PAIR_ALIGNMENT)));
+static_assert(__STDCPP_DEFAULT_NEW_ALIGNMENT__ >= ATLAS_PAIR_ALIGNMENT);
 
 // If has_wide_vectors, functions marked ATLAS_WIDE handle it in one instruction. Elsewhere
 // compilers split it into two, and may run out of registers. QuadInPlace is the type for reading it
 // from arrays.
 using Quad = double __attribute__((vector_size(32)));
-using QuadInPlace = double __attribute__((vector_size(32), aligned(16), may_alias));
+using QuadInPlace =
+    double __attribute__((vector_size(32), aligned(ATLAS_PAIR_ALIGNMENT), may_alias));
 
 // For functions that are called by functions with and without ATLAS_WIDE: they are compiled for
 // each.
