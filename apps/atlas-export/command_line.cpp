@@ -103,6 +103,9 @@ void add_chart_options(CLI::App& app, ExportCommand& command) {
   app.add_flag("--square", options.square_plain_page,
                "Uvs without light on a square page; else its shape is what packs best, and is "
                "printed");
+  app.add_flag("--polygons", options.polygons,
+               "Write the scene's faces instead of triangles, with no seam inside one (.obj with "
+               "uvs alone)");
   app.add_flag("--udim", options.udim,
                "Uvs without light on square UDIM tiles, 1001 to as many as --atlases says, instead "
                "of pages with a material each (.obj)");

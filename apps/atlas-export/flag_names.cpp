@@ -7,7 +7,7 @@
 namespace atlas::app {
 namespace {
 
-constexpr std::array<FlagName, 36> kFlagNames{{
+constexpr std::array<FlagName, 37> kFlagNames{{
     {"ExportOptions::atlases", "--atlases"},
     {"ExportOptions::lightmap_pages", "--atlases"},
     {"ExportOptions::plain_pages", "--atlases"},
@@ -28,6 +28,7 @@ constexpr std::array<FlagName, 36> kFlagNames{{
     {"ExportOptions::keep_scene", "--keep-scene"},
     {"ExportOptions::uv_set", "--uv-set"},
     {"ExportOptions::udim", "--udim"},
+    {"ExportOptions::polygons", "--polygons"},
     {"ExportOptions::linear", "--linear"},
     {"ExportOptions::exr", "--exr"},
     {"ExportOptions::quantity", "--quantity"},

@@ -275,6 +275,7 @@ ReadOptions read_options(const app::ExportCommand& command) {
   // What texture files there are must be known in any case, since pages must not replace them.
   read.encoded_textures = !uses_textures(command);
   read.unlit_textures = false;  // without light no page has an image
+  read.polygons = command.options.polygons;
   if (!command.options.keep_scene) return read;
   // A glTF file that is written again keeps its normals by itself.
   read.normals = !(is_gltf(command.scene) && is_gltf(command.options.target));

@@ -4,7 +4,7 @@
 #include <algorithm>
 
 #include "benchmarks/charts/charts_bench.h"
-#include "benchmarks/charts/charts_figures.h"
+#include "benchmarks/shapes/figures.h"
 #include "benchmarks/charts/charts_picture.h"
 #include "benchmarks/support/work.h"
 #include "libatlas/image/image_io.h"

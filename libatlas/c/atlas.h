@@ -97,8 +97,8 @@ typedef struct libatlas_extent {
 
 // ---- Meshes ----
 
-// A triangle mesh. Strides are in bytes from one element to the next; 0 stands for no gaps. Numbers
-// need not be aligned.
+// A mesh of triangles, or of polygons. Strides are in bytes from one element to the next; 0 stands
+// for no gaps. Numbers need not be aligned.
 typedef struct libatlas_mesh {
   size_t size;
   const void* positions;  // 3 floats each, finite
@@ -120,6 +120,12 @@ typedef struct libatlas_mesh {
                          // across which no chart continues; or null. Either side may say so.
   const float* triangle_density;  // 1 a triangle, times `density`, or null
   float density;                  // relative linear texel density, finite and > 0; default 1
+  // The corners of each polygon, at least 3; null: all are triangles. `indices`, `texcoord_indices`
+  // and `seams` then have 1 element a corner, polygon after polygon, and `materials` and
+  // `triangle_density` 1 a polygon. The sizes add up to index_count. Polygons may be concave and
+  // enclose holes that are joined to the outline by an edge there and back.
+  const uint32_t* polygon_sizes;
+  size_t polygon_count;
 } libatlas_mesh;
 LIBATLAS_API libatlas_status libatlas_mesh_init(libatlas_mesh* mesh, size_t size);
 
@@ -130,8 +136,9 @@ LIBATLAS_API libatlas_status libatlas_atlas_create(libatlas_context* context,
 LIBATLAS_API void libatlas_atlas_destroy(libatlas_atlas* atlas);
 
 // Adds a copy of a mesh. Meshes are numbered from 0 and never joined to each other, also where they
-// touch. `number` may be null. Status: BAD_INPUT with the mesh and the triangle; BAD_OPTION for the
-// size of the struct; UNSUPPORTED beyond 2^30 triangles or 2^32 positions in all.
+// touch. `number` may be null. Status: BAD_INPUT with the mesh and the triangle or polygon;
+// BAD_OPTION for the size of the struct; UNSUPPORTED beyond 2^30 triangles or 2^32 positions in
+// all, or for an outline too intricate to be cut into triangles.
 LIBATLAS_API libatlas_status libatlas_add_mesh(libatlas_context* context, libatlas_atlas* atlas,
                                                const libatlas_mesh* mesh, uint32_t* number);
 
@@ -175,9 +182,10 @@ LIBATLAS_API libatlas_status libatlas_lightmap_options_init(libatlas_unwrap_opti
 typedef struct libatlas_unwrapped libatlas_unwrapped;
 
 // Unwraps all meshes of an atlas; `options` may be null. Nothing is left out: triangle t of a mesh
-// is triangle t of its result, with its corners in the same order. May be called again, with other
-// options. Status: BAD_INPUT without a mesh, BAD_OPTION, NO_SOLUTION (more charts than the pages
-// hold texels for), CANCELLED.
+// is triangle t of its result, with its corners in the same order; of polygons each has its size -
+// 2 triangles, one polygon after the other. May be called again, with other options. Status:
+// BAD_INPUT without a mesh, BAD_OPTION, NO_SOLUTION (more charts than the pages hold texels for),
+// CANCELLED.
 LIBATLAS_API libatlas_status libatlas_unwrap(libatlas_context* context, const libatlas_atlas* atlas,
                                              const libatlas_unwrap_options* options,
                                              libatlas_unwrapped** unwrapped);
@@ -220,6 +228,22 @@ LIBATLAS_API libatlas_status libatlas_get_mesh(libatlas_context* context,
                                                const libatlas_unwrapped* unwrapped, uint32_t mesh,
                                                libatlas_mesh_uvs* uvs);
 
+// Uvs of a mesh of polygons, one per corner. No seam runs inside a polygon, except in those listed
+// as cut: they do not lie flat in one piece within the bounds of the options, or given uvs cut
+// them. `corners` has one part of these only; they can be drawn as their triangles.
+typedef struct libatlas_polygon_uvs {
+  size_t size;
+  size_t polygon_count, corner_count;  // 0 of a mesh of triangles
+  const uint32_t*
+      corners;  // 1 a corner, in the mesh's order: into the vertices of libatlas_mesh_uvs
+  const uint32_t* triangle_polygon;  // 1 a triangle of libatlas_mesh_uvs
+  size_t cut_count;
+  const uint32_t* cut_polygons;  // ascending
+} libatlas_polygon_uvs;
+LIBATLAS_API libatlas_status libatlas_get_polygons(libatlas_context* context,
+                                                   const libatlas_unwrapped* unwrapped,
+                                                   uint32_t mesh, libatlas_polygon_uvs* polygons);
+
 // All charts of the atlas; arrays have 1 element a chart.
 typedef struct libatlas_charts {
   size_t size;
@@ -240,8 +264,8 @@ LIBATLAS_API libatlas_status libatlas_get_charts(libatlas_context* context,
 
 // For each half-edge of a mesh, 3 a triangle as in libatlas_mesh: 1 if the edge from that corner to
 // the next is a seam of the result, where another triangle has the same edge in space, but not in
-// uv; else 0. `count` is the length of `seams`, 3 times the mesh's triangles. `atlas` is what was
-// unwrapped.
+// uv; else 0. `count` is the length of `seams`, 3 times the mesh's triangles. Of polygons: for each
+// corner, as in libatlas_mesh. `atlas` is what was unwrapped.
 LIBATLAS_API libatlas_status libatlas_get_seams(libatlas_context* context,
                                                 const libatlas_atlas* atlas,
                                                 const libatlas_unwrapped* unwrapped, uint32_t mesh,

@@ -1,3 +1,5 @@
+#include <fmt/format.h>
+
 #include "libatlas/c/objects.h"
 #include "libatlas/c/structs.h"
 
@@ -5,17 +7,25 @@ namespace atlas::c {
 namespace {
 
 StridedMesh strided_mesh(const libatlas_mesh& mesh) {
-  const std::size_t triangles = mesh.index_count / 3;
+  const std::size_t faces = mesh.polygon_sizes ? mesh.polygon_count : mesh.index_count / 3;
   StridedMesh strided{.positions = {mesh.positions, mesh.position_count, mesh.position_stride},
                       .indices = {mesh.indices, mesh.index_count, mesh.index_bytes},
                       .texcoords = {mesh.texcoords, mesh.texcoord_count, mesh.texcoord_stride}};
   if (mesh.normals) strided.normals = {mesh.normals, mesh.position_count, mesh.normal_stride};
   if (mesh.texcoord_indices)
     strided.texcoord_indices = {mesh.texcoord_indices, mesh.index_count, mesh.index_bytes};
-  if (mesh.materials) strided.materials = {mesh.materials, triangles};
+  if (mesh.materials) strided.materials = {mesh.materials, faces};
   if (mesh.seams) strided.seams = {mesh.seams, mesh.index_count};
-  if (mesh.triangle_density) strided.density = {mesh.triangle_density, triangles};
+  if (mesh.triangle_density) strided.density = {mesh.triangle_density, faces};
+  if (mesh.polygon_sizes) strided.polygon_sizes = {mesh.polygon_sizes, mesh.polygon_count};
   return strided;
+}
+
+Status check_polygons(const libatlas_mesh& mesh) {
+  if ((mesh.polygon_sizes != nullptr) == (mesh.polygon_count > 0)) return {};
+  return {ErrorCode::bad_input,
+          fmt::format("libatlas_mesh: polygon_count is {}, but polygon_sizes is {}",
+                      mesh.polygon_count, mesh.polygon_sizes ? "given" : "null")};
 }
 
 }  // namespace
@@ -45,6 +55,7 @@ libatlas_status libatlas_add_mesh(libatlas_context* context, libatlas_atlas* atl
     if (!atlas) return atlas::c::null("atlas");
     libatlas_mesh own;
     if (auto s = atlas::c::take_struct(mesh, "libatlas_mesh", own); !s.ok()) return s;
+    if (auto s = atlas::c::check_polygons(own); !s.ok()) return s;
     const auto added = atlas->atlas.add(atlas::c::strided_mesh(own), own.density);
     if (added.ok() && number) *number = *added;
     return added.status();

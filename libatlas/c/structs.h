@@ -15,10 +15,15 @@ namespace atlas::c {
 // No version of a struct will be larger than this, so a larger size was never set.
 inline constexpr std::size_t kLargestStruct = 4096;
 
-// `T` as it was in the version 0.1 of the library was its smallest.
+// The size of a struct in the first version of the library, before members were added to it.
+template <class T>
+inline constexpr std::size_t kFirstSize = sizeof(T);
+template <>
+inline constexpr std::size_t kFirstSize<libatlas_mesh> = offsetof(libatlas_mesh, polygon_sizes);
+
 template <class T>
 constexpr bool usable_size(std::size_t size) {
-  return size >= sizeof(T) && size <= kLargestStruct;
+  return size >= kFirstSize<T> && size <= kLargestStruct;
 }
 
 template <class T>
@@ -30,25 +35,28 @@ Status check_size(const T* given, const char* name) {
   return {};
 }
 
-// Copies what is passed in. Members that this version does not know must be 0.
+// Copies what is passed in. Members that the caller does not know are 0; those that this version
+// does not know must be.
 template <class T>
 Status take_struct(const T* given, const char* name, T& taken) {
   if (Status s = check_size(given, name); !s.ok()) return s;
   const auto* const bytes = reinterpret_cast<const unsigned char*>(given);
-  if (std::any_of(bytes + sizeof(T), bytes + given->size, [](unsigned char b) { return b != 0; }))
+  const std::size_t known = std::min(sizeof(T), given->size);
+  if (std::any_of(bytes + known, bytes + given->size, [](unsigned char b) { return b != 0; }))
     return {ErrorCode::unsupported,
             fmt::format("{}: uses members that this version of the library does not know", name)};
-  std::memcpy(&taken, given, sizeof(T));
+  taken = {};
+  std::memcpy(&taken, given, known);
   return {};
 }
 
-// Writes to a struct of the caller, whose size is set and stays. Members that this version does not
-// know become 0.
+// Writes to a struct of the caller, whose size is set and stays, what it has room for. Members that
+// this version does not know become 0.
 template <class T>
 void fill_struct(T* given, std::size_t size, T values) {
   values.size = size;
   std::memset(static_cast<void*>(given), 0, size);
-  std::memcpy(static_cast<void*>(given), &values, sizeof(T));
+  std::memcpy(static_cast<void*>(given), &values, std::min(size, sizeof(T)));
 }
 
 template <class T>

@@ -126,6 +126,18 @@ libatlas_mesh_uvs describe(const UnwrappedAtlas::Mesh& mesh) {
   return uvs;
 }
 
+libatlas_polygon_uvs describe_polygons(const UnwrappedAtlas::Mesh& mesh) {
+  libatlas_polygon_uvs uvs{};
+  if (mesh.polygon_corners.empty()) return uvs;
+  uvs.polygon_count = mesh.triangle_polygon.back() + std::size_t{1};
+  uvs.corner_count = mesh.polygon_corners.size();
+  uvs.corners = mesh.polygon_corners.data();
+  uvs.triangle_polygon = mesh.triangle_polygon.data();
+  uvs.cut_count = mesh.cut_polygons.size();
+  uvs.cut_polygons = mesh.cut_polygons.data();
+  return uvs;
+}
+
 libatlas_charts describe_charts(const libatlas_unwrapped& unwrapped) {
   libatlas_charts charts{};
   charts.chart_count = unwrapped.mesh.size();
@@ -191,6 +203,16 @@ libatlas_status libatlas_get_mesh(libatlas_context* context, const libatlas_unwr
     if (auto s = atlas::c::check_mesh(unwrapped, mesh); !s.ok()) return s;
     return atlas::c::hand_out(uvs, "libatlas_mesh_uvs",
                               atlas::c::describe(unwrapped->atlas.mesh(mesh)));
+  });
+}
+
+libatlas_status libatlas_get_polygons(libatlas_context* context,
+                                      const libatlas_unwrapped* unwrapped, uint32_t mesh,
+                                      libatlas_polygon_uvs* polygons) {
+  return atlas::c::run_call(context, [&] {
+    if (auto s = atlas::c::check_mesh(unwrapped, mesh); !s.ok()) return s;
+    return atlas::c::hand_out(polygons, "libatlas_polygon_uvs",
+                              atlas::c::describe_polygons(unwrapped->atlas.mesh(mesh)));
   });
 }
 

@@ -30,6 +30,10 @@ struct MeshView {
   // 1 a position, or empty: positions that lie at one place are one vertex only if these are equal,
   // so that no chart continues from one object to another, wherever they lie.
   std::span<const std::uint32_t> objects = {};
+  // 1 a triangle, or empty: triangles with equal numbers are one polygon, inside which no seam runs
+  // unless it cannot lie flat in one piece, or given seams, materials or texcoords cut it. Nothing
+  // but equality counts.
+  std::span<const std::uint32_t> polygons = {};
 };
 
 enum class ChartPreset { fast, standard, best };

@@ -106,6 +106,7 @@ class Finder {
         }
         d.hash = mixed(d.hash, name_[v]);
         d.hash = mixed(d.hash, o == kNoIndex ? kNoIndex : 3 * place_[o / 3] + o % 3);
+        if (topology_.inner(h)) d.hash = mixed(d.hash, 1);
         const glm::dvec3 p = point(h);
         low = glm::min(low, p);
         high = glm::max(high, p);
@@ -154,6 +155,7 @@ class Finder {
     if (name_[va] != vb) return false;
     const std::uint32_t oa = topology_.opposite[ha], ob = topology_.opposite[hb];
     if (oa == kNoIndex || ob == kNoIndex) return oa == ob;
+    if (topology_.inner(ha) != topology_.inner(hb)) return false;
     return place_[oa / 3] == place_[ob / 3] && oa % 3 == ob % 3;
   }
 

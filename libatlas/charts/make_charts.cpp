@@ -1,10 +1,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <unordered_map>
 
+#include "libatlas/charts/assemble_charts.h"
 #include "libatlas/charts/charts.h"
 #include "libatlas/charts/filling/limbs.h"
 #include "libatlas/charts/filling/long_charts.h"
@@ -17,7 +16,6 @@
 #include "libatlas/charts/relative_density.h"
 #include "libatlas/charts/totals.h"
 #include "libatlas/core/clock.h"
-#include "libatlas/core/degrees.h"
 #include "libatlas/core/glm_bridge.h"
 #include "libatlas/core/is_enumerator.h"
 #include "libatlas/core/parallel.h"
@@ -81,185 +79,6 @@ std::vector<FlatChart> keep_charts(const Work& work, const Context& context, Cha
   set.repairs.reflattened_charts = given.reflattened;
   return std::move(given.charts);
 }
-
-// Gathers the flat charts into one ChartSet.
-class Assembler {
- public:
-  // `density`: the factor that was taken out of the densities.
-  Assembler(const MeshView& mesh, const Topology& topology, double density, ChartSet& set)
-      : mesh_(mesh), topology_(topology), set_(set), unscale_(density / topology.scale) {}
-
-  void run(std::vector<FlatChart>& charts) {
-    const std::size_t n = topology_.triangle_count();
-    set_.triangle_chart.assign(n, kNoIndex);
-    set_.triangle_uv.assign(3 * n, kNoIndex);
-    set_.chart_triangles.reserve(n);
-    std::size_t uvs = 0;
-    for (const FlatChart& chart : charts) uvs += chart.uvs.size();
-    set_.charts.reserve(charts.size());
-    set_.uvs.reserve(uvs);
-    set_.uv_vertex.reserve(uvs);
-    for (FlatChart& chart : charts) {
-      if (has_area(chart)) append(chart);
-    }
-    place_degenerate();
-    number_triangles();
-    for (std::uint32_t t = 0; t < n; ++t) {
-      if (topology_.flags[t] & Topology::kFlipped) set_.flipped_triangles.push_back(t);
-    }
-  }
-
- private:
-  std::uint32_t material(std::uint32_t t) const {
-    return mesh_.materials.empty() ? 0 : mesh_.materials[t];
-  }
-
-  bool has_area(const FlatChart& chart) const {
-    return std::any_of(chart.triangles.begin(), chart.triangles.end(),
-                       [&](std::uint32_t t) { return !topology_.thin(t); });
-  }
-
-  bool placed(std::uint32_t t) const { return set_.triangle_chart[t] != kNoIndex; }
-
-  void append(FlatChart& flat) {
-    const auto id = static_cast<std::uint32_t>(set_.charts.size());
-    const auto base = static_cast<std::uint32_t>(set_.uvs.size());
-    Chart chart;
-    chart.first_uv = base;
-    chart.uv_count = static_cast<std::uint32_t>(flat.uvs.size());
-    chart.material = material(flat.triangles.front());
-    chart.size = {flat.size.x * unscale_, flat.size.y * unscale_};
-    chart.axis = flat.cone.axis;
-    chart.cone_degrees = degrees(flat.cone.angle);
-    chart.planar_projection = flat.planar;
-    chart.kept = flat.kept;
-    chart.distortion = flat.distortion;
-    chart.distortion.surface_area *= unscale_ * unscale_;
-    chart.distortion.uv_area *= unscale_ * unscale_;
-    for (const Vec2d uv : flat.uvs) set_.uvs.push_back({uv.x * unscale_, uv.y * unscale_});
-    for (const std::uint32_t v : flat.vertex) {
-      set_.uv_vertex.push_back(topology_.source_vertex[v]);
-    }
-    for (std::size_t i = 0; i < flat.triangles.size(); ++i) {
-      const std::uint32_t t = flat.triangles[i];
-      set_.triangle_chart[t] = id;
-      for (std::uint32_t c = 0; c < 3; ++c) {
-        set_.triangle_uv[topology_.input_corner(3 * t + c)] = base + flat.corners[i][c];
-      }
-    }
-    set_.charts.push_back(chart);
-    flat = FlatChart{};  // its memory is needed no more
-  }
-
-  // A triangle without area that no chart holds is drawn nowhere: it joins the chart of a
-  // neighbour, one that shares an edge if there is one, and lies on that edge or on a vertex; else
-  // any chart of its object and material.
-  void place_degenerate() {
-    if (topology_.defects.degenerate_triangles == 0) return;
-    std::vector<std::uint8_t> wanted(topology_.points.size(), 0);
-    for (std::uint32_t t = 0; t < topology_.triangle_count(); ++t) {
-      if (placed(t)) continue;
-      for (std::uint32_t h = 3 * t; h < 3 * t + 3; ++h) wanted[topology_.corner_vertex[h]] = 1;
-    }
-    std::unordered_map<std::uint64_t, std::uint32_t> around;  // vertex or edge -> a half-edge
-    for (std::uint32_t h = 0; h < topology_.corner_vertex.size(); ++h) {
-      const std::uint32_t a = topology_.corner_vertex[h];
-      const std::uint32_t b = topology_.corner_vertex[next_half_edge(h)];
-      if (!placed(h / 3) || !wanted[a]) continue;
-      around.emplace(key(a, a), h);
-      if (wanted[b]) around.emplace(key(std::min(a, b), std::max(a, b)), h);
-    }
-    std::vector<std::uint32_t> left;
-    for (std::uint32_t t = 0; t < topology_.triangle_count(); ++t) {
-      if (!placed(t)) left.push_back(t);
-    }
-    for (const std::uint32_t t : left) place_degenerate(t, around);
-  }
-
-  static std::uint64_t key(std::uint64_t a, std::uint64_t b) { return a << 32 | b; }
-
-  void place_degenerate(std::uint32_t t,
-                        const std::unordered_map<std::uint64_t, std::uint32_t>& around) {
-    std::array<std::uint32_t, 3> v;
-    for (std::uint32_t c = 0; c < 3; ++c) v[c] = topology_.corner_vertex[3 * t + c];
-    for (const bool edge : {true, false}) {
-      for (std::uint32_t c = 0; c < 3; ++c) {
-        const std::uint32_t a = v[c], b = edge ? v[(c + 1) % 3] : a;
-        if (edge && a == b) continue;
-        const auto found = around.find(key(std::min(a, b), std::max(a, b)));
-        if (found == around.end() || material(found->second / 3) != material(t)) continue;
-        const std::uint32_t h = found->second;
-        const std::uint32_t at_h = set_.triangle_uv[topology_.input_corner(h)];
-        const std::uint32_t at_next = set_.triangle_uv[topology_.input_corner(next_half_edge(h))];
-        set_.triangle_chart[t] = set_.triangle_chart[h / 3];
-        for (std::uint32_t i = 0; i < 3; ++i) {
-          const bool other = edge && v[i] == topology_.corner_vertex[next_half_edge(h)];
-          set_.triangle_uv[topology_.input_corner(3 * t + i)] = other ? at_next : at_h;
-        }
-        return;
-      }
-    }
-    const std::uint32_t chart = first_chart_like(t);
-    set_.triangle_chart[t] = chart;
-    for (std::uint32_t c = 0; c < 3; ++c) {
-      set_.triangle_uv[3 * t + c] = set_.charts[chart].first_uv;
-    }
-  }
-
-  std::uint64_t object_and_material(std::uint32_t vertex, std::uint32_t material) const {
-    return key(mesh_.objects.empty() ? 0 : mesh_.objects[vertex], material);
-  }
-
-  std::uint32_t first_chart_like(std::uint32_t t) {
-    if (first_alike_.empty()) {
-      for (std::uint32_t k = 0; k < set_.charts.size(); ++k) {
-        const Chart& chart = set_.charts[k];
-        first_alike_.emplace(object_and_material(set_.uv_vertex[chart.first_uv], chart.material),
-                             k);
-      }
-    }
-    const auto id = static_cast<std::uint32_t>(set_.charts.size());
-    const std::uint32_t vertex =
-        topology_.source_vertex[topology_.corner_vertex[3 * std::size_t{t}]];
-    const auto [known, added] = first_alike_.emplace(object_and_material(vertex, material(t)), id);
-    if (!added) return known->second;
-    Chart chart;  // a single point
-    chart.first_uv = static_cast<std::uint32_t>(set_.uvs.size());
-    chart.uv_count = 1;
-    chart.material = material(t);
-    chart.axis = {0, 0, 1};
-    chart.planar_projection = true;
-    set_.uvs.push_back({});
-    set_.uv_vertex.push_back(vertex);
-    set_.charts.push_back(chart);
-    return id;
-  }
-
-  void number_triangles() {
-    for (const std::uint32_t chart : set_.triangle_chart) ++set_.charts[chart].triangle_count;
-    std::uint32_t first = 0;
-    std::vector<std::uint32_t> next;
-    next.reserve(set_.charts.size());
-    for (Chart& chart : set_.charts) {
-      chart.first_triangle = first;
-      next.push_back(first);
-      first += chart.triangle_count;
-    }
-    set_.chart_triangles.resize(first);
-    for (std::uint32_t t = 0; t < set_.triangle_chart.size(); ++t) {
-      set_.chart_triangles[next[set_.triangle_chart[t]]++] = t;
-    }
-    for (Chart& chart : set_.charts)
-      chart.material = material(set_.chart_triangles[chart.first_triangle]);
-  }
-
-  const MeshView& mesh_;
-  const Topology& topology_;
-  ChartSet& set_;
-  double unscale_;
-  // By object and material, filled when asked for.
-  std::unordered_map<std::uint64_t, std::uint32_t> first_alike_;
-};
 
 // Length of the edges that exactly two triangles share in space, but not in uv.
 double seam_length(const Topology& topology, const ChartSet& set) {
@@ -373,7 +192,7 @@ Result<ChartSet> make_charts(const MeshView& mesh, const ChartOptions& options,
                                       : cut_charts({topology, given, options}, rest, set);
   if (context.cancelled()) return Status::cancelled();
   return_freed_memory();
-  Assembler(given, topology, relative.factor, set).run(charts);
+  assemble_charts({given, topology, relative.factor}, charts, set);
   set.seam_length = seam_length(topology, set);
   number_as_given(canonical, set);
   set.distortion = total_distortion(set.charts);

@@ -110,7 +110,7 @@ class Tiler {
     std::iota(all.begin(), all.end(), 0u);
     param::HalfEdges half_edges;
     half_edges.build(piece.corners, piece.uvs.size());
-    LineCutter cutter(piece, half_edges, all);
+    LineCutter cutter(piece, half_edges, all, mesh_.polygons);
     const glm::dvec2 size = box.size();
     const int axis = size.x >= size.y ? 0 : 1;
     cutter.face(axis == 0 ? 0 : std::numbers::pi / 2);

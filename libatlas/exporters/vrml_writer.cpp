@@ -171,7 +171,7 @@ std::string appearance(const Page& page, bool lit) {
 Result<WorldFile> write_vrml(const World& world, const fs::path& path, AtomicFiles& files,
                              const Context& context) {
   if (Status s = check_world(world); !s.ok()) return s;
-  if (Status s = check_no_tiles(world); !s.ok()) return s;
+  if (Status s = check_only_triangles(world); !s.ok()) return s;
   if (world.scene != nullptr) {
     return Status(ErrorCode::bad_option,
                   path.string() +

@@ -48,6 +48,19 @@ Status check_indices(std::size_t page, const char* list, const std::vector<std::
   return {};
 }
 
+// Checks that the sizes of faces add up, if there are any.
+Status check_faces(std::size_t number, const Page& page) {
+  if (page.face_sizes.empty()) return {};
+  std::size_t corners = 0;
+  for (const std::uint32_t size : page.face_sizes) {
+    if (size < 3) return wrong(fmt::format("page {} has a face of {} corners", number, size));
+    corners += size;
+  }
+  if (corners == page.indices.size()) return {};
+  return wrong(fmt::format("page {} has faces of {} corners, and {} indices", number, corners,
+                           page.indices.size()));
+}
+
 // Checks what has one value per triangle or none.
 Status check_triangle_lists(std::size_t number, const Page& page) {
   const std::size_t triangles = page.indices.size() / 3;
@@ -115,7 +128,9 @@ Status check_world(const World& world) {
         fmt::format("it has tiles of {} uvs, and {} uvs", world.uv_tiles.size(), world.uvs.size()));
   for (std::size_t i = 0; i < world.pages.size(); ++i) {
     const Page& page = world.pages[i];
-    if (page.indices.size() % 3 != 0 || page.indices.size() != page.uv_indices.size()) {
+    if (Status s = check_faces(i, page); !s.ok()) return s;
+    if ((page.face_sizes.empty() && page.indices.size() % 3 != 0) ||
+        page.indices.size() != page.uv_indices.size()) {
       return wrong(fmt::format("page {} has {} indices and {} uv_indices (3 a triangle each)", i,
                                page.indices.size(), page.uv_indices.size()));
     }
@@ -134,7 +149,9 @@ Status check_world(const World& world) {
   return world.scene ? check_kept_scene(world) : Status();
 }
 
-Status check_no_tiles(const World& world) {
+Status check_only_triangles(const World& world) {
+  for (const Page& page : world.pages)
+    if (!page.face_sizes.empty()) return wrong("it has polygons, which only OBJ has");
   return world.uv_tiles.empty() ? Status() : wrong("it has UDIM tiles, which only OBJ has");
 }
 

@@ -36,6 +36,9 @@ struct Page {
   std::filesystem::path image_source = {};
   std::vector<std::uint32_t> indices = {};     // 3 per triangle, into World::positions
   std::vector<std::uint32_t> uv_indices = {};  // 3 per triangle, into World::uvs
+  // Only .obj: the corners of each face, at least 3; empty: all are triangles. The two lists above
+  // then have the corners of one face after the other.
+  std::vector<std::uint32_t> face_sizes = {};
   // 1 per triangle, or empty: whether it is seen from its front only, where its corners run
   // counter-clockwise. All others are seen from both sides. OBJ cannot tell them apart.
   std::vector<bool> one_sided = {};
@@ -226,8 +229,8 @@ std::filesystem::path file_beside(const std::filesystem::path& path);
 // The check that all writers begin with.
 Status check_world(const World& world);
 
-// Refuses a world of UDIM tiles, for formats that have none.
-Status check_no_tiles(const World& world);
+// Refuses a world of UDIM tiles or of faces with more corners, for formats that have none.
+Status check_only_triangles(const World& world);
 
 // Returns the file name of a page's image without its extension: world.wrl gives world_0, world_1,
 // ...

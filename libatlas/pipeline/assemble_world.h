@@ -18,6 +18,10 @@ namespace atlas {
 World assemble_world(const Scene& scene, const PlacedCharts& placed, const WorldMesh& mesh,
                      std::vector<Vec2f> uvs);
 
+// Gives the pages of a world of triangles the scene's faces (Scene::polygons) in their place, each
+// on the page of its chart. Returns how many faces stay triangles, since seams cut them.
+std::size_t take_polygons(const Scene& scene, const PlacedCharts& placed, World& world);
+
 // Turns the pages of a world without images into UDIM tiles, of which all triangles share one page.
 void make_tiles(const PlacedCharts& placed, World& world);
 

@@ -32,6 +32,14 @@ Status check_udim(const ExportOptions& o) {
   return {};
 }
 
+Status check_polygons(const ExportOptions& o) {
+  if (!o.polygons || o.target.empty()) return {};
+  if (lower_extension(o.target) == ".obj" && !o.keep_scene) return {};
+  return {ErrorCode::bad_option,
+          "ExportOptions::polygons: only an .obj of uvs alone has faces of more than three corners "
+          "(name an .obj without ExportOptions::keep_scene, or leave ExportOptions::polygons out)"};
+}
+
 Status check_weight(const ExportOptions& o) {
   const bool webp = o.texture_format == TextureFormat::webp;
   if ((webp || o.compress) && !holds_compressed(o.target)) {
@@ -74,6 +82,7 @@ Status check_options(const ExportOptions& o) {
   if (o.plain_pages < 1) return out_of_range("plain_pages", "at least 1");
   if (o.lightmap_pages < 1) return out_of_range("lightmap_pages", "at least 1");
   if (Status s = check_udim(o); !s.ok()) return s;
+  if (Status s = check_polygons(o); !s.ok()) return s;
   if (o.uv_set < 0 || o.uv_set > 7) return out_of_range("uv_set", "within 1..7, or 0");
   if (o.uv_set > 0 && (!o.keep_scene || lower_extension(o.target) == ".obj")) {
     return {ErrorCode::bad_option,

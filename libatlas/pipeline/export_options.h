@@ -58,6 +58,12 @@ struct ExportOptions {
   // plain_pages, and scenes with light need charts_only.
   bool udim = false;
 
+  // The file has the scene's faces instead of triangles, and no seam runs inside one, unless it
+  // cannot lie flat in one piece (ExportReport::cut_polygons): such a face is written as triangles.
+  // The scene must have been read with them (ReadOptions::polygons). Needs an .obj without
+  // keep_scene, and scenes with light need charts_only.
+  bool polygons = false;
+
   // As mip_levels, for plain uvs; 0..kMostMipLevels. With 0, charts keep two texels between each
   // other, which bilinear lookups need.
   std::int32_t plain_mip_levels = 0;

@@ -294,6 +294,11 @@ Status check_plan(const ExportPlan& plan, const ExportOptions& options) {
             "ExportOptions::udim: this scene carries light, whose pages are images with materials "
             "of their own (add ExportOptions::charts_only, or leave ExportOptions::udim out)"};
   }
+  if (options.polygons && plan.bake) {
+    return {ErrorCode::bad_option,
+            "ExportOptions::polygons: this scene carries light, which is baked for triangles (add "
+            "ExportOptions::charts_only, or leave ExportOptions::polygons out)"};
+  }
   if ((plan.bake ? options.atlases : options.plain_pages) > 1 && !holds_pages(options, plan.bake)) {
     return plan.bake
                ? Status{ErrorCode::bad_option,

@@ -217,6 +217,7 @@ Json pages_json(const ExportReport& r) {
   packing["mip_levels"] = r.mip_levels;
   packing["gpu_bytes"] = r.gpu_bytes;
   packing["thin_triangles"] = r.thin_triangles;
+  packing["cut_polygons"] = r.cut_polygons;
   if (r.texels_drawn_twice) packing["texels_drawn_twice"] = *r.texels_drawn_twice;
   packing["pages"] = pages;
   return packing;

@@ -8,6 +8,7 @@
 
 #include "libatlas/core/is_enumerator.h"
 #include "libatlas/core/is_finite.h"
+#include "libatlas/core/no_index.h"
 #include "libatlas/image/file_kind.h"
 
 namespace atlas {
@@ -117,6 +118,31 @@ Status check_triangles(const Scene& scene) {
   return s;
 }
 
+// Checks that the faces have all triangles, in their order, and that corners have one vertex each.
+Status check_polygons(const Scene& scene) {
+  const PolygonCorners& faces = scene.polygons;
+  if (faces.count() == 0) return {};
+  if (faces.polygon.size() != scene.triangle_count() ||
+      faces.triangles.size() != scene.indices.size())
+    return wrong("polygons has {} triangles, but there are {}", faces.polygon.size(),
+                 scene.triangle_count());
+  std::vector<std::uint32_t> vertex(faces.first.back(), kNoIndex);
+  for (std::size_t i = 0; i < faces.triangles.size(); ++i) {
+    const std::uint32_t polygon = faces.polygon[i / 3], corner = faces.triangles[i];
+    const bool in_order = i < 3 || polygon >= faces.polygon[i / 3 - 1];
+    if (polygon >= faces.count() || !in_order || corner < faces.first[polygon] ||
+        corner >= faces.first[polygon + 1])
+      return wrong("polygons: corner {} of triangle {} is none of its polygon's", i % 3, i / 3);
+    if (vertex[corner] == kNoIndex) vertex[corner] = scene.indices[i];
+    if (vertex[corner] != scene.indices[i])
+      return wrong("polygons: corner {} has the vertices {} and {}", corner, vertex[corner],
+                   scene.indices[i]);
+  }
+  for (std::size_t c = 0; c < vertex.size(); ++c)
+    if (vertex[c] == kNoIndex) return wrong("polygons: no triangle has corner {}", c);
+  return {};
+}
+
 // Checks that every triangle on the lightmap has all three coordinates, and a page with an image.
 Status check_lightmap(const Scene& scene) {
   if (!scene.lightmap) return {};
@@ -198,6 +224,7 @@ Status check_materials(const Scene& scene) {
 Status check_scene(const Scene& scene) {
   Status s = check_vertices(scene);
   if (s.ok()) s = check_triangles(scene);
+  if (s.ok()) s = check_polygons(scene);
   if (s.ok()) s = check_materials(scene);
   if (s.ok()) s = check_lightmap(scene);
   return s;

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "libatlas/core/image.h"
+#include "libatlas/core/polygon.h"
 #include "libatlas/core/vec.h"
 
 namespace atlas {
@@ -113,6 +114,8 @@ struct Scene {
   std::vector<Material> materials = {};               // at least one when there are triangles
   std::vector<Texture> textures = {};
   std::vector<std::string> object_names = {};
+  // The file's faces, of which the triangles are parts, if asked for (ReadOptions::polygons).
+  PolygonCorners polygons = {};
   // Null if the file names none, or it is not asked for (ReadOptions::lightmap). Exports ignore it.
   std::shared_ptr<const SceneLightmap> lightmap = {};
   // The glTF file itself, if asked for (ReadOptions::rest). An export to glTF that keeps the scene

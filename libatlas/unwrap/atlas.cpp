@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 #include <string>
 #include <tuple>
@@ -12,100 +11,16 @@
 
 #include "libatlas/charts/mesh/weld.h"
 #include "libatlas/core/half_edge.h"
-#include "libatlas/core/is_finite.h"
 #include "libatlas/core/no_index.h"
 #include "libatlas/core/sort_total.h"
+#include "libatlas/unwrap/mesh_check.h"
+#include "libatlas/unwrap/mesh_polygons.h"
 
 namespace atlas {
 namespace {
 
 constexpr std::size_t kMostPositions = std::numeric_limits<std::uint32_t>::max();
 constexpr std::size_t kMostTriangles = std::size_t{1} << 30;
-
-// Checks a mesh that is to be the one with this number.
-class MeshCheck {
- public:
-  MeshCheck(const StridedMesh& mesh, std::size_t number) : mesh_(mesh), number_(number) {}
-
-  Status run(float density) const {
-    if (!usable(density)) return bad(fmt::format("density {} ({})", density, kUsable));
-    if (Status s = check_arrays(); !s.ok()) return s;
-    if (Status s = check_lengths(); !s.ok()) return s;
-    return check_triangles(density);
-  }
-
- private:
-  static constexpr const char* kUsable = "must be above 0 and finite";
-  static bool usable(float density) { return density > 0 && std::isfinite(density); }
-
-  Status bad(const std::string& text) const {
-    return {ErrorCode::bad_input, fmt::format("mesh {}: {}", number_, text)};
-  }
-  Status bad(std::size_t triangle, const std::string& text) const {
-    return bad(fmt::format("triangle {}: {}", triangle, text));
-  }
-
-  Status check_arrays() const {
-    const std::string mesh = fmt::format("mesh {}: ", number_);
-    if (Status s = check_span(mesh + "positions", mesh_.positions); !s.ok()) return s;
-    if (Status s = check_span(mesh + "indices", mesh_.indices); !s.ok()) return s;
-    if (Status s = check_span(mesh + "normals", mesh_.normals); !s.ok()) return s;
-    if (Status s = check_span(mesh + "texcoords", mesh_.texcoords); !s.ok()) return s;
-    return check_span(mesh + "texcoord indices", mesh_.texcoord_indices);
-  }
-
-  Status check_lengths() const {
-    const std::size_t corners = mesh_.indices.count, triangles = corners / 3;
-    if (corners < 3) return bad("no triangle (nothing to unwrap)");
-    if (corners % 3 != 0) return bad(fmt::format("{} indices are not whole triangles", corners));
-    const auto wrong = [](std::size_t count, std::size_t expected) {
-      return count > 0 && count != expected;
-    };
-    if (wrong(mesh_.normals.count, mesh_.positions.count))
-      return bad(fmt::format("{} normals for {} positions (one each, or none)", mesh_.normals.count,
-                             mesh_.positions.count));
-    if (wrong(mesh_.texcoord_indices.count, corners))
-      return bad(fmt::format("{} texcoord indices for {} corners (one each, or none)",
-                             mesh_.texcoord_indices.count, corners));
-    if (mesh_.texcoord_indices.count == 0 && wrong(mesh_.texcoords.count, mesh_.positions.count))
-      return bad(fmt::format("{} texcoords for {} positions (one each, or give texcoord indices)",
-                             mesh_.texcoords.count, mesh_.positions.count));
-    if (wrong(mesh_.materials.size(), triangles))
-      return bad(fmt::format("{} materials for {} triangles (one each, or none)",
-                             mesh_.materials.size(), triangles));
-    if (wrong(mesh_.density.size(), triangles))
-      return bad(fmt::format("{} densities for {} triangles (one each, or none)",
-                             mesh_.density.size(), triangles));
-    if (wrong(mesh_.seams.size(), corners))
-      return bad(
-          fmt::format("{} seams for {} edges (one each, or none)", mesh_.seams.size(), corners));
-    if (wrong(mesh_.objects.size(), mesh_.positions.count))
-      return bad(fmt::format("{} objects for {} positions (one each, or none)",
-                             mesh_.objects.size(), mesh_.positions.count));
-    return {};
-  }
-
-  Status check_triangles(float density) const {
-    for (std::size_t i = 0; i < mesh_.indices.count; ++i) {
-      const std::uint32_t v = mesh_.indices[i];
-      if (v >= mesh_.positions.count)
-        return bad(i / 3, fmt::format("vertex index {} names none of the {} positions (indices "
-                                      "count from 0)",
-                                      v, mesh_.positions.count));
-      if (!is_finite(mesh_.positions[v]))
-        return bad(i / 3, fmt::format("vertex {} has a position that is not finite", v));
-      if (mesh_.normals.count > 0 && !is_finite(mesh_.normals[v]))
-        return bad(i / 3, fmt::format("vertex {} has a normal that is not finite", v));
-    }
-    for (std::size_t t = 0; t < mesh_.density.size(); ++t)
-      if (!usable(mesh_.density[t]) || !usable(density * mesh_.density[t]))
-        return bad(t, fmt::format("density {} times {} ({})", mesh_.density[t], density, kUsable));
-    return {};
-  }
-
-  const StridedMesh& mesh_;
-  std::size_t number_;
-};
 
 // Appends to an array with `before` values, which stays empty until there is something to append.
 template <class T>
@@ -127,6 +42,7 @@ StridedMesh strided(const MeshView& mesh) {
       .density = mesh.density,
       .seams = mesh.seams,
       .objects = mesh.objects,
+      .polygons = mesh.polygons,
   };
 }
 
@@ -204,12 +120,21 @@ UnwrappedAtlas::UnwrappedAtlas(UnwrappedMesh all, std::span<const std::size_t> f
   }
 }
 
+std::span<const std::uint32_t> UnwrappedAtlas::triangles(std::size_t i) const {
+  return part(all_.indices, 3 * first_triangle_[i], 3 * first_triangle_[i + 1]);
+}
+
 UnwrappedAtlas::Mesh UnwrappedAtlas::mesh(std::size_t i) const {
   const std::size_t v = first_vertex_[i], v_end = first_vertex_[i + 1];
   const std::size_t t = first_triangle_[i], t_end = first_triangle_[i + 1];
-  return {part(all_.vertices, v, v_end), part(all_.uvs, v, v_end),
-          part(all_.indices, 3 * t, 3 * t_end), part(all_.triangle_page, t, t_end),
-          part(all_.charts.triangle_chart, t, t_end)};
+  return {part(all_.vertices, v, v_end),
+          part(all_.uvs, v, v_end),
+          triangles(i),
+          part(all_.triangle_page, t, t_end),
+          part(all_.charts.triangle_chart, t, t_end),
+          triangle_polygon_[i],
+          polygon_uvs_[i].corners,
+          polygon_uvs_[i].cut};
 }
 
 std::size_t UnwrappedAtlas::mesh_of_chart(std::size_t chart) const {
@@ -225,21 +150,40 @@ Result<std::uint32_t> Atlas::add(const MeshView& mesh, float density) {
 
 Result<std::uint32_t> Atlas::add(const StridedMesh& mesh, float density) {
   const std::size_t number = mesh_count();
-  if (Status s = MeshCheck(mesh, number).run(density); !s.ok()) return s;
+  if (Status s = check_mesh(mesh, number, density); !s.ok()) return s;
+  const std::size_t polygons = mesh.polygon_sizes.size(),
+                    triangles =
+                        polygons > 0 ? mesh.indices.count - 2 * polygons : mesh.indices.count / 3;
   if (mesh.positions.count > kMostPositions - positions_.size() ||
       mesh.texcoords.count > kMostPositions - texcoords_.size() ||
-      mesh.indices.count / 3 >= kMostTriangles - first_triangle_.back())
+      triangles >= kMostTriangles - first_triangle_.back())
     return Status(ErrorCode::unsupported,
                   fmt::format("mesh {}: more than 2^30 triangles or 2^32 vertices with those "
                               "before it (use another atlas)",
                               number));
   try {
-    append(mesh, density);
+    mesh_polygons_.emplace_back();
+    if (polygons > 0) {
+      if (Status s = add_polygons(mesh, density); !s.ok()) {
+        cut_to_meshes();
+        return s;
+      }
+    } else {
+      append(mesh, density);
+    }
   } catch (...) {
     cut_to_meshes();
     throw;
   }
   return std::uint32_t(number);
+}
+
+Status Atlas::add_polygons(const StridedMesh& mesh, float density) {
+  Result<TriangulatedMesh> triangulated = triangulate_mesh(mesh, mesh_count());
+  if (!triangulated.ok()) return triangulated.status();
+  append(triangulated->view(mesh), density);
+  mesh_polygons_.back() = std::move(triangulated->polygons);
+  return {};
 }
 
 void Atlas::append(const StridedMesh& mesh, float density) {
@@ -251,6 +195,7 @@ void Atlas::append(const StridedMesh& mesh, float density) {
   append_values(materials_, triangle, mesh.materials, triangles, 0u);
   append_seams(mesh);
   append_texcoords(mesh);
+  append_polygons(mesh);
 
   std::vector<float> densities(mesh.density.begin(), mesh.density.end());
   if (densities.empty() && density != 1) densities.assign(triangles, 1);
@@ -260,6 +205,19 @@ void Atlas::append(const StridedMesh& mesh, float density) {
   first_position_.push_back(position + mesh.positions.count);
   first_triangle_.push_back(triangle + triangles);
   object_count_ += objects;
+}
+
+// Each triangle without a polygon gets a number of its own.
+void Atlas::append_polygons(const StridedMesh& mesh) {
+  const std::size_t before = first_triangle_.back(), triangles = mesh.indices.count / 3;
+  if (mesh.polygons.empty() && polygons_.empty()) return;
+  for (std::size_t t = polygons_.size(); t < before; ++t) polygons_.push_back(std::uint32_t(t));
+  std::unordered_map<std::uint32_t, std::uint32_t> numbers;  // of this mesh
+  for (std::size_t t = 0; t < triangles; ++t) {
+    const std::uint32_t own = mesh.polygons.empty() ? std::uint32_t(t) : mesh.polygons[t];
+    const auto next = std::uint32_t(before + numbers.size());
+    polygons_.push_back(numbers.try_emplace(own, next).first->second);
+  }
 }
 
 // Returns how many objects the mesh consists of.
@@ -320,6 +278,8 @@ void Atlas::cut_to_meshes() {
   cut(seams_, 3 * triangles);
   cut(materials_, triangles);
   cut(density_, triangles);
+  cut(polygons_, triangles);
+  cut(mesh_polygons_, mesh_count());
 }
 
 Result<UnwrappedAtlas> Atlas::unwrap(const UnwrapOptions& options, const Context& context) const {
@@ -333,10 +293,16 @@ Result<UnwrappedAtlas> Atlas::unwrap(const UnwrapOptions& options, const Context
   view.texcoords = texcoords_;
   view.texcoord_indices = texcoord_indices_;
   view.seams = seams_;
+  view.polygons = polygons_;
   if (object_count_ > 1) view.objects = objects_;
   Result<UnwrappedMesh> all = unwrap_mesh(view, options, context);
   if (!all.ok()) return all.status();
-  return UnwrappedAtlas(std::move(*all), first_position_, first_triangle_);
+  UnwrappedAtlas unwrapped(std::move(*all), first_position_, first_triangle_);
+  for (std::size_t i = 0; i < mesh_count(); ++i) {
+    unwrapped.triangle_polygon_.push_back(mesh_polygons_[i].polygon);
+    unwrapped.polygon_uvs_.push_back(polygon_uvs(mesh_polygons_[i], unwrapped.triangles(i)));
+  }
+  return unwrapped;
 }
 
 Result<std::vector<std::uint8_t>> Atlas::seams(const UnwrappedAtlas& unwrapped,
@@ -353,7 +319,10 @@ Result<std::vector<std::uint8_t>> Atlas::seams(const UnwrappedAtlas& unwrapped,
                                    indices_.begin() + std::ptrdiff_t(c_end));
   count_from(place, v);
   place = welded_corners(part(positions_, v, v_end), part(objects_, v, v_end), place);
-  return find_seams(place, part(unwrapped.all_.charts.triangle_uv, c, c_end));
+  std::vector<std::uint8_t> seams =
+      find_seams(place, part(unwrapped.all_.charts.triangle_uv, c, c_end));
+  const PolygonCorners& polygons = mesh_polygons_[mesh];
+  return polygons.count() > 0 ? seams_of_sides(seams, polygons) : seams;
 }
 
 }  // namespace atlas

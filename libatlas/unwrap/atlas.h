@@ -6,13 +6,15 @@
 #include <span>
 #include <vector>
 
+#include "libatlas/core/polygon.h"
 #include "libatlas/unwrap/strided.h"
 #include "libatlas/unwrap/unwrap.h"
+#include "libatlas/uvs/polygon_uvs.h"
 
 namespace atlas {
 
-// A triangle mesh as programs keep it to draw it: several attributes in one array, indices of 16
-// bits. Members that are not explained here are those of MeshView.
+// A mesh as programs keep it to draw or to edit it: several attributes in one array, indices of 16
+// bits, polygons. Members that are not explained here are those of MeshView.
 struct StridedMesh {
   StridedSpan<Vec3f> positions = {};
   IndexSpan indices = {};  // 3 a triangle
@@ -25,6 +27,15 @@ struct StridedMesh {
   std::span<const float> density = {};
   std::span<const std::uint8_t> seams = {};
   std::span<const std::uint32_t> objects = {};
+  std::span<const std::uint32_t> polygons = {};  // not with polygon_sizes
+  // The corners of each polygon, at least 3; or empty: all are triangles. Sizes, not offsets, since
+  // files and editors have them, and every list of sizes that adds up is a valid one. `indices`,
+  // `texcoord_indices` and `seams` then have one value a corner, polygon after polygon, and
+  // `materials` and `density` one a polygon. Outlines may be concave, cross themselves, come back
+  // to a corner, and enclose holes that are joined to them by an edge there and back. They are cut
+  // as the readers of files cut them; no seam runs inside a polygon, unless it cannot lie flat in
+  // one piece, see UnwrappedAtlas::Mesh::cut_polygons.
+  std::span<const std::uint32_t> polygon_sizes = {};
 };
 
 // What Atlas::unwrap() returns.
@@ -37,6 +48,15 @@ class UnwrappedAtlas {
     std::span<const Vec2f> uvs = {};               // one per vertex
     std::span<const std::uint32_t> indices = {};   // three per triangle, into vertices and uvs
     std::span<const std::uint32_t> triangle_page = {}, triangle_chart = {};  // one per triangle
+    // The rest is empty unless the mesh has polygons (StridedMesh::polygon_sizes). Its triangles
+    // are those of its polygons, in their order, size - 2 of each.
+    std::span<const std::uint32_t> triangle_polygon = {};  // one per triangle
+    // One per corner of the polygons, in their own order: into vertices and uvs.
+    std::span<const std::uint32_t> polygon_corners = {};
+    // Polygons that a seam runs through, ascending: those that do not lie flat in one piece within
+    // ChartOptions::max_stretch or cone_degrees, or that given uvs cut. Of them `polygon_corners`
+    // has one part only; they are to be drawn as their triangles.
+    std::span<const std::uint32_t> cut_polygons = {};
   };
 
   std::size_t mesh_count() const { return first_vertex_.size() - 1; }
@@ -50,12 +70,16 @@ class UnwrappedAtlas {
 
  private:
   friend class Atlas;
+  std::span<const std::uint32_t> triangles(std::size_t i) const;  // Mesh::indices
   // `first_position`, `first_triangle`: one per mesh of `all`, and the ends.
   UnwrappedAtlas(UnwrappedMesh all, std::span<const std::size_t> first_position,
                  std::span<const std::size_t> first_triangle);
 
   UnwrappedMesh all_;
   std::vector<std::size_t> first_vertex_ = {}, first_triangle_ = {};  // one per mesh, and the ends
+  // One per mesh, empty without polygons: the polygon of each triangle; uvs.
+  std::vector<std::vector<std::uint32_t>> triangle_polygon_ = {};
+  std::vector<PolygonUvs> polygon_uvs_ = {};
 };
 
 // Meshes that are to share an atlas. They keep their order, and are never joined to each other: a
@@ -65,9 +89,10 @@ class Atlas {
  public:
   // Adds a copy of a mesh, whose arrays are not used afterwards. `density`: relative linear texel
   // density of the whole mesh, finite and > 0. Returns its number; meshes are counted from 0.
-  // Errors: bad_input where there is no triangle; a stride, an index, a position or a density is
-  // not usable, or an array has the wrong length; unsupported where all meshes have 2^30 triangles
-  // or 2^32 positions. The message names mesh and triangle, and the atlas is as it was.
+  // Errors: bad_input where there is no triangle; a stride, an index, a position, a density or a
+  // polygon is not usable, or an array has the wrong length; unsupported where all meshes have 2^30
+  // triangles or 2^32 positions, or an outline is too intricate to be cut into triangles. The
+  // message names mesh and triangle or polygon, and the atlas is as it was.
   Result<std::uint32_t> add(const StridedMesh& mesh, float density = 1);
   Result<std::uint32_t> add(const MeshView& mesh, float density = 1);
 
@@ -78,13 +103,16 @@ class Atlas {
   // them get charts then, too. Errors: those of unwrap_mesh(); bad_input where there is no mesh.
   Result<UnwrappedAtlas> unwrap(const UnwrapOptions& options, const Context& context) const;
 
-  // Returns the seams of a mesh, in the form of MeshView::seams: 1 where another triangle has the
-  // same edge in space, but not in uv. `unwrapped` is what unwrap() returned for these meshes. The
-  // borders of the surface are no seams. Errors: bad_input (other meshes, or no such mesh).
+  // Returns the seams of a mesh, in the form of MeshView::seams, or StridedMesh::seams of polygons:
+  // 1 where another triangle has the same edge in space, but not in uv. `unwrapped` is what
+  // unwrap() returned for these meshes. The borders of the surface are no seams. Errors: bad_input
+  // (other meshes, or no such mesh).
   Result<std::vector<std::uint8_t>> seams(const UnwrappedAtlas& unwrapped, std::size_t mesh) const;
 
  private:
+  Status add_polygons(const StridedMesh& mesh, float density);
   void append(const StridedMesh& mesh, float density);
+  void append_polygons(const StridedMesh& mesh);
   std::uint32_t append_positions(const StridedMesh& mesh);
   void append_seams(const StridedMesh& mesh);
   void append_texcoords(const StridedMesh& mesh);
@@ -97,7 +125,10 @@ class Atlas {
   std::vector<float> density_ = {};
   std::vector<Vec2f> texcoords_ = {};
   std::vector<std::uint8_t> seams_ = {};
+  std::vector<std::uint32_t> polygons_ = {};
   std::uint32_t object_count_ = 0;
+  // One per mesh: its polygons, none of meshes of triangles.
+  std::vector<PolygonCorners> mesh_polygons_ = {};
 };
 
 }  // namespace atlas

@@ -76,7 +76,7 @@ TEST(RaggedRims, TheSearchForLimbsEndsSoonAfterItIsCancelled) {
       cancel = true;
     });
     const double area = chart.distortion.uv_area;
-    EXPECT_TRUE(limbs_of(chart, 0.72, area, context).empty());
+    EXPECT_TRUE(limbs_of(chart, {0.72, area}, context).empty());
     canceller.join();
     EXPECT_LT(cpu_seconds() - cancelled_at, 0.2 * kSlowness) << wait;
   }

@@ -88,6 +88,11 @@ float through_needles(const Topology& topology, std::uint32_t h, float step) {
 
 // The last pass: assigns each triangle to the seed of a cell.
 class TriangleGrowth {
+  struct Settled {
+    std::uint32_t triangle;
+    float distance;
+  };
+
  public:
   TriangleGrowth(const CellInput& input, const Grains& grains, const CellSeeds& seeds)
       : input_(input),
@@ -107,7 +112,7 @@ class TriangleGrowth {
         if (++visits % visits_between_looks == 0 && context.cancelled()) return {};
         const Arrival visit = queue_.pop();
         fetch_ahead(topology_, ground_, queue_);
-        if (ground_[visit.node].distance >= 0) spread(visit);
+        if (ground_[visit.node].distance >= 0) settle(visit);
       }
     }
     return cells();
@@ -150,16 +155,36 @@ class TriangleGrowth {
     return !queue_.empty();
   }
 
-  // Makes the cell of a triangle final, and offers its neighbours to that cell.
-  void spread(const Arrival& visit) {
-    Ground& here = ground_[visit.node];
-    const float so_far = std::exchange(here.distance, -1.0f);
+  // Makes the cell of a triangle final. The other triangles of its polygon join that cell, too.
+  void settle(const Arrival& visit) {
+    const std::uint32_t own = ground_[visit.node].cell;
+    settled_.assign(1, {visit.node, std::exchange(ground_[visit.node].distance, -1.0f)});
+    for (std::size_t i = 0; i < settled_.size(); ++i) {
+      const Settled here = settled_[i];
+      for (std::uint32_t h = 3 * here.triangle; h < 3 * here.triangle + 3; ++h) {
+        if (!topology_.inner(h)) continue;
+        Ground& mate = ground_[topology_.opposite[h] / 3];
+        if (mate.distance < 0) continue;
+        mate.distance = -1;
+        mate.cell = own;
+        settled_.push_back(
+            {topology_.opposite[h] / 3,
+             here.distance + glm::distance(ground_[here.triangle].middle, mate.middle)});
+      }
+    }
+    for (const Settled& here : settled_) spread(here, visit.key);
+  }
+
+  // Offers the neighbours of a triangle whose cell is final to that cell.
+  void spread(const Settled& settled, std::uint32_t key) {
+    const Ground& here = ground_[settled.triangle];
+    const float so_far = settled.distance;
     const std::uint32_t own = here.cell;
     const glm::vec3 from = here.middle, axis = seeds_.normal[own];
-    const CellRuler& ruler = rulers_[topology_.component[visit.node]];
-    for (std::uint32_t h = 3 * visit.node; h < 3 * visit.node + 3; ++h) {
+    const CellRuler& ruler = rulers_[topology_.component[settled.triangle]];
+    for (std::uint32_t h = 3 * settled.triangle; h < 3 * settled.triangle + 3; ++h) {
       const std::uint32_t o = topology_.opposite[h];
-      if (o == kNoIndex || input_.walled(visit.node, o / 3)) continue;
+      if (o == kNoIndex || input_.walled(settled.triangle, o / 3)) continue;
       Ground& next_to = ground_[o / 3];
       if (next_to.distance < 0) continue;
       float step = glm::distance(from, next_to.middle);
@@ -167,7 +192,7 @@ class TriangleGrowth {
         step = through_needles(topology_, h, step);
       const float distance = so_far + cell_distance(step, next_to.normal, axis);
       if (!ruler.take(distance, own, next_to.distance, next_to.cell)) continue;
-      queue_.push({std::max(ruler.key(distance), visit.key), o / 3});
+      queue_.push({std::max(ruler.key(distance), key), o / 3});
     }
   }
 
@@ -188,7 +213,8 @@ class TriangleGrowth {
   std::vector<Ground> ground_;                // one per triangle
   std::vector<std::uint32_t> seed_triangle_;  // one per cell, or kNoIndex
   RingQueue<Arrival> queue_;
-  std::uint32_t next_ = 0;  // the first cell of the pieces to come
+  std::vector<Settled> settled_;  // scratch memory
+  std::uint32_t next_ = 0;        // the first cell of the pieces to come
 };
 
 // Removes the numbers of cells without triangles.
@@ -266,6 +292,7 @@ Cells grow_cells(const CellInput& input, const CellOptions& options, const Conte
   if (context.cancelled()) return {};
   Cells cells = TriangleGrowth(input, grains, seeds).run(context);
   if (!context.cancelled()) dissolve_thin_cells(input.topology, cells);
+  if (!input.topology.polygon.empty()) renumber(cells);  // a polygon may have held two seeds
   return cells;
 }
 

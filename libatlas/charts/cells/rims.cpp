@@ -48,22 +48,39 @@ class Divider {
     flood({a}, old, 2);
     const std::uint32_t b = queue_.back();
     if (a == b) return;
-    // Both parts grow at once; a triangle belongs to the one that reaches it first.
-    queue_ = {a, b};
-    mark_[a] = 3;
-    mark_[b] = 4;
+    // Both parts grow at once; a polygon belongs to the one that reaches it first.
+    queue_.clear();
+    reach(a, old, 3);
+    if (mark_[b] >= 3) return;  // a single polygon
+    reach(b, old, 4);
     const std::uint32_t fresh = cells_.count++;
     for (std::size_t i = 0; i < queue_.size(); ++i) {
       const std::uint32_t t = queue_[i];
       for (std::uint32_t h = 3 * t; h < 3 * t + 3; ++h) {
         const std::uint32_t o = topology_.opposite[h];
         if (o == kNoIndex || cells_.of_triangle[o / 3] != old || mark_[o / 3] >= 3) continue;
-        mark_[o / 3] = mark_[t];
-        queue_.push_back(o / 3);
+        reach(o / 3, old, mark_[t]);
       }
     }
     for (const std::uint32_t t : queue_) {
       if (mark_[t] == 4) cells_.of_triangle[t] = fresh;
+    }
+  }
+
+  // Adds a triangle to the queue, with the others of its polygon.
+  void reach(std::uint32_t triangle, std::uint32_t cell, std::uint8_t mark) {
+    mark_[triangle] = mark;
+    const std::size_t first = queue_.size();
+    queue_.push_back(triangle);
+    if (topology_.polygon.empty()) return;
+    for (std::size_t i = first; i < queue_.size(); ++i) {
+      for (std::uint32_t h = 3 * queue_[i]; h < 3 * queue_[i] + 3; ++h) {
+        if (!topology_.inner(h)) continue;
+        const std::uint32_t mate = topology_.opposite[h] / 3;
+        if (cells_.of_triangle[mate] != cell || mark_[mate] >= 3) continue;
+        mark_[mate] = mark;
+        queue_.push_back(mate);
+      }
     }
   }
 
@@ -161,6 +178,7 @@ void pull_teeth(const Topology& topology, const Regions* regions, Cells& cells) 
     while (!waiting.empty()) {
       const std::uint32_t t = waiting.back(), own = cells.of_triangle[t];
       waiting.pop_back();
+      if (topology.inner(3 * t) || topology.inner(3 * t + 1) || topology.inner(3 * t + 2)) continue;
       const std::uint32_t to = most_around(topology, regions, cells, t);
       if (own == kNoIndex || to == own || to == kNoIndex || size[own] == 1) continue;
       --size[own];

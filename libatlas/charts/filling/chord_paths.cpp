@@ -34,10 +34,12 @@ struct Visit {
 }  // namespace
 
 ChordPaths::ChordPaths(const FlatChart& chart, const param::HalfEdges& half_edges,
-                       const std::vector<std::uint32_t>& piece_of, const Context& context)
+                       const std::vector<std::uint32_t>& piece_of,
+                       std::span<const std::uint32_t> polygons, const Context& context)
     : chart_(chart),
       half_edges_(half_edges),
       piece_of_(piece_of),
+      polygons_(polygons),
       context_(context),
       leaving_(sort_into_buckets(3 * chart.triangles.size(), chart.uvs.size(),
                                  [&](std::size_t h) { return chart.corners[h / 3][h % 3]; })),
@@ -51,7 +53,7 @@ std::vector<std::array<std::uint32_t, 2>> ChordPaths::edges_across(const Piece& 
   for (const std::uint32_t t : piece.triangles) {
     for (std::uint32_t h = 3 * t; h < 3 * t + 3; ++h) {
       const std::uint32_t a = place[half_edges_.from(h)], b = place[half_edges_.to(h)];
-      if (a != kUnseen && b != kUnseen && a < b && across(h) != kNoIndex) edges.push_back({a, b});
+      if (a != kUnseen && b != kUnseen && a < b && open(h)) edges.push_back({a, b});
     }
   }
   for (const std::uint32_t i : piece.outline) place[i] = kUnseen;
@@ -84,7 +86,7 @@ std::vector<std::uint32_t> ChordPaths::search(std::uint32_t piece, std::uint32_t
     if (stray(p, from, to) > kMostStray) continue;
     for (const std::uint32_t h : leaving_[visit.uv]) {
       const std::uint32_t next = half_edges_.to(h);
-      if (piece_of_[h / 3] != piece || across(h) == kNoIndex || by_[next] != kUnseen) continue;
+      if (piece_of_[h / 3] != piece || !open(h) || by_[next] != kUnseen) continue;
       if (next != b && on_rim_[next]) continue;
       const Vec2d& q = chart_.uvs[next];
       const double off = stray({(p.x + q.x) / 2, (p.y + q.y) / 2}, from, to);

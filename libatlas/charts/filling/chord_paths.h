@@ -16,10 +16,12 @@ namespace atlas {
 // Keeps its memory for the whole chart between calls.
 class ChordPaths {
  public:
-  // `piece_of` has one entry per triangle: the piece that it belongs to at the time of a call. All
-  // arguments must outlive the object.
+  // `piece_of` has one entry per triangle: the piece that it belongs to at the time of a call.
+  // `polygons` as for LineCutter: paths do not lead through polygons. All arguments must outlive
+  // the object.
   ChordPaths(const FlatChart& chart, const param::HalfEdges& half_edges,
-             const std::vector<std::uint32_t>& piece_of, const Context& context);
+             const std::vector<std::uint32_t>& piece_of, std::span<const std::uint32_t> polygons,
+             const Context& context);
 
   struct Piece {
     std::span<const std::uint32_t> triangles, outline;  // outline: uvs
@@ -40,6 +42,13 @@ class ChordPaths {
     const std::uint32_t o = half_edges_.opposite(h);
     return o != kNoIndex && piece_of_[o / 3] == piece_of_[h / 3] ? o : kNoIndex;
   }
+  // Whether a path may follow h.
+  bool open(std::uint32_t h) const {
+    const std::uint32_t o = across(h);
+    if (o == kNoIndex) return false;
+    return polygons_.empty() ||
+           polygons_[chart_.triangles[h / 3]] != polygons_[chart_.triangles[o / 3]];
+  }
   // Fills by_. Returns the uvs that it reached.
   std::vector<std::uint32_t> search(std::uint32_t piece, std::uint32_t a, std::uint32_t b);
   // Returns the path from a to b, if by_ leads there and it is not much longer than the chord.
@@ -48,6 +57,7 @@ class ChordPaths {
   const FlatChart& chart_;
   const param::HalfEdges& half_edges_;
   const std::vector<std::uint32_t>& piece_of_;
+  std::span<const std::uint32_t> polygons_;
   const Context& context_;
   Buckets leaving_;                   // half-edges by the uv that they leave
   std::vector<std::uint32_t> by_;     // one per uv: the half-edge by which a path arrives

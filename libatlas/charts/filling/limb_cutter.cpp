@@ -4,6 +4,7 @@
 #include <cmath>
 #include <map>
 #include <numeric>
+#include <span>
 #include <utility>
 
 #include "libatlas/charts/filling/chord_paths.h"
@@ -43,13 +44,14 @@ using Triangles = std::vector<std::uint32_t>;  // indices into the chart's trian
 // Cuts one flat chart into pieces.
 class LimbCutter {
  public:
-  LimbCutter(const FlatChart& chart, double all_charts, const Context& context)
+  LimbCutter(const FlatChart& chart, const LimbLimits& limits, const Context& context)
       : chart_(chart),
-        all_charts_(all_charts),
+        all_charts_(limits.all_charts),
         context_(context),
+        polygons_(limits.polygons),
         half_edges_(built(chart)),
         piece_of_(chart.triangles.size(), 0),
-        paths_(chart, half_edges_, piece_of_, context) {
+        paths_(chart, half_edges_, piece_of_, polygons_, context) {
     const std::size_t n = chart.triangles.size();
     side_.resize(n);
     seen_.resize(3 * n);
@@ -227,7 +229,7 @@ class LimbCutter {
 
   void divide_frame(Piece& piece) {
     MiddleCut cut = cut_middle(chart_, half_edges_, piece.triangles,
-                               {kLeastPiece * chart_area(), least_fall_, &context_});
+                               {kLeastPiece * chart_area(), least_fall_, polygons_, &context_});
     if (cut.parts.empty()) return;
     piece.length = cut.length;
     piece.score = cut.fall >= least_fall_ ? cut.fall / cut.length
@@ -326,6 +328,7 @@ class LimbCutter {
   const FlatChart& chart_;
   double all_charts_;  // area of all charts
   const Context& context_;
+  std::span<const std::uint32_t> polygons_;
   param::HalfEdges half_edges_;
   std::vector<std::uint32_t> piece_of_;  // one per triangle of the chart
   ChordPaths paths_;
@@ -338,9 +341,9 @@ class LimbCutter {
 
 }  // namespace
 
-std::vector<std::vector<std::uint32_t>> limbs_of(const FlatChart& chart, double wanted,
-                                                 double all_charts, const Context& context) {
-  return LimbCutter(chart, all_charts, context).run(wanted);
+std::vector<std::vector<std::uint32_t>> limbs_of(const FlatChart& chart, const LimbLimits& limits,
+                                                 const Context& context) {
+  return LimbCutter(chart, limits, context).run(limits.wanted);
 }
 
 }  // namespace atlas

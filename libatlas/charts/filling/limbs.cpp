@@ -107,9 +107,9 @@ class LimbCharts {
   // Fills pieces_[k] and returns true if cutting the chart pays.
   bool cut(std::size_t k) {
     const FlatChart& chart = charts_[k];
-    const double wanted = input_.options.min_fill;
+    const LimbLimits limits{input_.options.min_fill, area_, input_.topology.polygon};
     std::vector<FlatChart> pieces;
-    for (const std::vector<std::uint32_t>& limb : limbs_of(chart, wanted, area_, context_)) {
+    for (const std::vector<std::uint32_t>& limb : limbs_of(chart, limits, context_)) {
       // A cut along a ragged border may leave a triangle unconnected to its limb.
       for (const std::vector<std::uint32_t>& triangles : connected_parts(chart, limb)) {
         pieces.push_back(part_of_chart(input_, chart, triangles));

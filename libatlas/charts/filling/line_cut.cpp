@@ -24,7 +24,8 @@ constexpr std::size_t kLines = 128;  // candidates for that line
 }  // namespace
 
 LineCutter::LineCutter(const FlatChart& chart, const param::HalfEdges& half_edges,
-                       std::span<const std::uint32_t> triangles)
+                       std::span<const std::uint32_t> triangles,
+                       std::span<const std::uint32_t> polygons)
     : chart_(chart),
       triangles_(triangles),
       joined_(3 * triangles.size()),
@@ -42,7 +43,31 @@ LineCutter::LineCutter(const FlatChart& chart, const param::HalfEdges& half_edge
     length_[s] = static_cast<float>(portable::hypot(b.x - a.x, b.y - a.y));
     longest_ = std::max<double>(longest_, length_[s]);
   }
+  number_polygons(polygons);
   face(0);
+}
+
+void LineCutter::number_polygons(std::span<const std::uint32_t> polygons) {
+  if (polygons.empty()) return;
+  std::vector<std::uint32_t> numbers;
+  for (const std::uint32_t i : triangles_) numbers.push_back(polygons[chart_.triangles[i]]);
+  polygon_ = numbers;
+  std::sort(numbers.begin(), numbers.end());
+  numbers.erase(std::unique(numbers.begin(), numbers.end()), numbers.end());
+  for (std::uint32_t& p : polygon_)
+    p = std::uint32_t(std::lower_bound(numbers.begin(), numbers.end(), p) - numbers.begin());
+  polygon_count_ = std::uint32_t(numbers.size());
+}
+
+// Puts the triangles of each polygon where their mean is.
+void LineCutter::gather_polygons() {
+  std::vector<double> sum(polygon_count_, 0), count(polygon_count_, 0);
+  for (std::uint32_t i = 0; i < polygon_.size(); ++i) {
+    sum[polygon_[i]] += along_[i];
+    ++count[polygon_[i]];
+  }
+  for (std::uint32_t i = 0; i < polygon_.size(); ++i)
+    along_[i] = sum[polygon_[i]] / count[polygon_[i]];
 }
 
 void LineCutter::face(double angle) {
@@ -53,6 +78,7 @@ void LineCutter::face(double angle) {
       along_[i] += (x * chart_.uvs[v].x + y * chart_.uvs[v].y) / 3;
     }
   }
+  gather_polygons();
   const auto [low, high] = std::minmax_element(along_.begin(), along_.end());
   low_ = *low;
   high_ = *high;
@@ -124,8 +150,9 @@ void LineCutter::find_sides(double line, double band) {
       if (o == kNoIndex) continue;
       const std::uint32_t j = o / 3;
       const double off = std::min(1.0, std::abs((along_[i] + along_[j]) / 2 - line) / band);
-      const auto weight =
-          static_cast<std::int32_t>(1 + kUnits * length_[s] / longest_ * (1 + kStray * off * off));
+      const double share = length_[s] / longest_ * (1 + kStray * off * off);
+      const std::int32_t weight =
+          together(i, j) ? MinCut::kForever : static_cast<std::int32_t>(1 + kUnits * share);
       if (node_[j] == kNoIndex) {
         min_cut_.tie(node_[i], side_[j], weight);
       } else if (i < j) {

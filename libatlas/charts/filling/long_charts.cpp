@@ -75,12 +75,13 @@ using Lengths = std::vector<std::vector<std::uint32_t>>;
 
 // Returns the triangles of `count` lengths, about equal ones; nothing if one of them would be
 // empty, or when cancelled.
-Lengths lengths_of(const FlatChart& chart, std::size_t count, const Context& context) {
+Lengths lengths_of(const FlattenInput& input, const FlatChart& chart, std::size_t count,
+                   const Context& context) {
   std::vector<std::uint32_t> all(chart.triangles.size());
   std::iota(all.begin(), all.end(), 0u);
   param::HalfEdges half_edges;
   half_edges.build(chart.corners, chart.uvs.size());
-  LineCutter cutter(chart, half_edges, all);
+  LineCutter cutter(chart, half_edges, all, input.topology.polygon);
   cutter.face(chart.size.x >= chart.size.y ? 0 : std::numbers::pi / 2);
   const double length = (cutter.high() - cutter.low()) / double(count);
   const double crumb = kCrumb * chart.distortion.uv_area / double(count);
@@ -150,7 +151,8 @@ std::size_t cut_long_charts(const FlattenInput& input, std::vector<FlatChart>& c
     const std::size_t wanted =
         std::max(pieces_for_page(charts, place, area), pieces_for_gutters(charts, place, area));
     if (wanted < 2 || slim < kStrip * double(wanted) / 2) return count;
-    std::vector<FlatChart> pieces = cut(input, *longest, lengths_of(*longest, wanted, context));
+    std::vector<FlatChart> pieces =
+        cut(input, *longest, lengths_of(input, *longest, wanted, context));
     if (pieces.empty()) return count;
     const auto at = charts.erase(longest);
     charts.insert(at, std::move_iterator(pieces.begin()), std::move_iterator(pieces.end()));

@@ -37,7 +37,7 @@ double sprawl_of(const FlatChart& chart, const param::HalfEdges& half_edges,
 
 MiddleCut cut_middle(const FlatChart& chart, const param::HalfEdges& half_edges,
                      std::span<const std::uint32_t> triangles, const MiddleCutLimits& limits) {
-  LineCutter cutter(chart, half_edges, triangles);
+  LineCutter cutter(chart, half_edges, triangles, limits.polygons);
   std::vector<std::uint8_t> belongs(chart.triangles.size(), 0);
   const double whole = sprawl_of(chart, half_edges, triangles, belongs);
   MiddleCut best, middle;

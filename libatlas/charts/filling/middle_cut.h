@@ -19,9 +19,10 @@ struct MiddleCut {
 };
 
 struct MiddleCutLimits {
-  double crumb = 0;                  // area; smaller parts stay with a neighbour
-  double least_fall = 0;             // area
-  const Context* context = nullptr;  // polled between lines; may be null
+  double crumb = 0;                              // area; smaller parts stay with a neighbour
+  double least_fall = 0;                         // area
+  std::span<const std::uint32_t> polygons = {};  // as for LineCutter
+  const Context* context = nullptr;              // polled between lines; may be null
 };
 
 // Divides `triangles` (indices into chart.triangles, connected) near lines in several directions

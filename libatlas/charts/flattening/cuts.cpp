@@ -28,6 +28,7 @@ constexpr double kLengthStep = 1e-3;
 constexpr std::size_t kLongestDart = 12;
 // Edges that were cut in vain count this many times their length.
 constexpr double kDetour = 4;
+constexpr double kPolygonDetour = 1e4;  // so many times if they lie inside a polygon
 // Spikes of scan noise have larger defects: a cone whose normals lean by 20 degrees has this one.
 constexpr double kSharpDefect = 0.4;
 constexpr double kFreeShare = 0.001;  // share of the area that the bound does not apply to
@@ -171,11 +172,13 @@ class EdgePaths {
   double length(std::uint32_t h) const {
     const std::uint32_t s = chart_.triangles()[h / 3],
                         t = chart_.triangles()[chart_.opposite[h] / 3];
+    const bool inner = topology_.inner(whole_half_edge(chart_, h));
     const double fold =
         0.5 * (1 - glm::dot(to_dvec(topology_.normals[s]), to_dvec(topology_.normals[t])));
     const double plain = glm::distance(point(from(h)), point(from(next_half_edge(h)))) /
                          (1 + kCreaseDiscount * fold);
-    return std::round((avoided(h) ? kDetour * plain : plain) / step_);
+    const double detour = (inner ? kPolygonDetour : 1) * (avoided(h) ? kDetour : 1);
+    return std::round(detour * plain / step_);
   }
 
   // Visits the inner edges at v. Starting from a border half-edge, the walk meets each of them

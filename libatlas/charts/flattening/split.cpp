@@ -1,11 +1,15 @@
 #include "libatlas/charts/flattening/split.h"
 
+#include <algorithm>
 #include <array>
 #include <functional>
 #include <limits>
+#include <numeric>
 #include <queue>
+#include <utility>
 
 #include "libatlas/core/glm_bridge.h"
+#include "libatlas/core/sort_total.h"
 
 namespace atlas {
 namespace {
@@ -82,6 +86,44 @@ class GrownRegions {
   std::priority_queue<Visit, std::vector<Visit>, std::greater<>> heap_;
 };
 
+// Gives each polygon to the part that has most of its area. If a single part would be left, one
+// polygon goes to another part; a chart of one polygon stays divided by triangles.
+void keep_polygons_whole(const Topology& topology, const LocalChart& chart,
+                         std::vector<std::uint8_t>& parts) {
+  const std::span<const std::uint32_t> triangles = chart.triangles();
+  std::vector<std::uint32_t> order(triangles.size());
+  std::iota(order.begin(), order.end(), 0u);
+  const auto polygon = [&](std::uint32_t i) { return topology.polygon[triangles[i]]; };
+  sort_total(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
+    return polygon(a) != polygon(b) ? polygon(a) < polygon(b) : a < b;
+  });
+  std::vector<std::uint8_t> whole(parts.size());
+  struct Spare {
+    double area = -1;  // in the part that did not get the polygon
+    std::size_t begin = 0, end = 0;
+    std::uint8_t part = 0;
+  } spare;
+  for (std::size_t begin = 0, end = 0; begin < order.size(); begin = end) {
+    std::array<double, 256> area{};
+    for (; end < order.size() && polygon(order[end]) == polygon(order[begin]); ++end)
+      area[parts[order[end]]] += topology.areas[triangles[order[end]]];
+    const auto most = std::max_element(area.begin(), area.end());
+    const auto part = static_cast<std::uint8_t>(most - area.begin());
+    for (std::size_t i = begin; i < end; ++i) whole[order[i]] = part;
+    for (std::size_t i = begin; i < end; ++i) {
+      const std::uint8_t other = parts[order[i]];
+      if (other != part && area[other] > spare.area) spare = {area[other], begin, end, other};
+    }
+  }
+  const bool divided =
+      std::any_of(whole.begin(), whole.end(), [&](std::uint8_t p) { return p != whole[0]; });
+  if (!divided) {
+    if (spare.end - spare.begin == order.size()) return;
+    for (std::size_t i = spare.begin; i < spare.end; ++i) whole[order[i]] = spare.part;
+  }
+  parts = std::move(whole);
+}
+
 std::uint32_t farthest_from(const Topology& topology, const LocalChart& chart,
                             std::uint32_t start) {
   const GrownRegions region(topology, chart, {&start, 1});
@@ -108,7 +150,9 @@ std::array<std::uint32_t, 2> far_pair(const Topology& topology, const LocalChart
 
 std::vector<std::uint8_t> divide(const Topology& topology, const LocalChart& chart,
                                  std::span<const std::uint32_t> seeds) {
-  return GrownRegions(topology, chart, seeds).take_owners();
+  std::vector<std::uint8_t> parts = GrownRegions(topology, chart, seeds).take_owners();
+  if (!topology.polygon.empty()) keep_polygons_whole(topology, chart, parts);
+  return parts;
 }
 
 }  // namespace atlas

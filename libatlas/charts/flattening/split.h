@@ -18,7 +18,8 @@ std::array<std::uint32_t, 2> far_pair(const Topology& topology, const LocalChart
 
 // Divides a connected chart by growing regions from the given local triangles, at least two
 // different ones, at equal speed (slower across creases). Returns one label per triangle; the
-// triangles of each label are connected.
+// triangles of each label are connected. Polygons stay whole, and labels may then fall apart,
+// unless the chart is a single polygon.
 std::vector<std::uint8_t> divide(const Topology& topology, const LocalChart& chart,
                                  std::span<const std::uint32_t> seeds);
 

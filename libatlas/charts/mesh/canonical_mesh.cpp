@@ -336,6 +336,7 @@ CanonicalMesh canonical_mesh(const MeshView& input, const WeldedVertices& welded
   mesh.density = per_triangle(input.density, mesh);
   mesh.texcoord_indices = per_corner(input.texcoord_indices, mesh);
   mesh.seams = per_corner(input.seams, mesh);
+  mesh.polygons = per_triangle(input.polygons, mesh);
   return mesh;
 }
 

@@ -21,10 +21,11 @@ struct CanonicalMesh {
   std::vector<std::uint32_t> materials, texcoord_indices;
   std::vector<float> density;
   std::vector<std::uint8_t> seams;
+  std::vector<std::uint32_t> polygons;
 
   // Without positions, which are those of the places.
   MeshView view(std::span<const Vec2f> texcoords) const {
-    return {{}, indices, materials, density, texcoords, texcoord_indices, seams};
+    return {{}, indices, materials, density, texcoords, texcoord_indices, seams, {}, polygons};
   }
   std::uint32_t input_triangle(std::uint32_t t) const { return first_corner[t] / 3; }
   std::uint32_t input_corner(std::uint32_t corner) const {

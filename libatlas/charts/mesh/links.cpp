@@ -141,6 +141,7 @@ class Linker {
       if (fan_[i].third != fan_[i - 1].third) continue;
       mark_duplicate(fan_[i - 1].half_edge, fan_[i].half_edge);
     }
+    if (!topology_.polygon.empty()) link_polygons();
     const auto allowed = [&](std::uint32_t g, std::uint32_t h) { return may_link(g, h); };
     for (const auto& [g, h] : pairing_.run(fan_, allowed)) {
       link(g, h);
@@ -151,6 +152,28 @@ class Linker {
       if (a.third != b.third || a.layer != b.layer) continue;
       fins_.push_back({a.half_edge, b.half_edge, true});
     }
+  }
+
+  // Links the triangles of a fan that continue each other inside a polygon, and removes them from
+  // the fan.
+  void link_polygons() {
+    std::vector<bool> linked(fan_.size(), false);
+    for (std::size_t i = 0; i < fan_.size(); ++i) {
+      for (std::size_t j = i + 1; j < fan_.size() && !linked[i]; ++j) {
+        const FanFace &a = fan_[i], &b = fan_[j];
+        const bool one =
+            topology_.polygon[a.half_edge / 3] == topology_.polygon[b.half_edge / 3] && !linked[j];
+        if (!one || a.forward == b.forward || a.third == b.third) continue;
+        if (!may_link(a.half_edge, b.half_edge)) continue;
+        link(a.half_edge, b.half_edge);
+        topology_.fan_links.push_back(std::min(a.half_edge, b.half_edge));
+        linked[i] = linked[j] = true;
+      }
+    }
+    std::size_t kept = 0;
+    for (std::size_t i = 0; i < fan_.size(); ++i)
+      if (!linked[i]) fan_[kept++] = fan_[i];
+    fan_.resize(kept);
   }
 
   // Coincident triangles of opposite orientation that nothing else continues are the two sides of a

@@ -45,6 +45,7 @@ void PieceCutter::add_piece(std::uint32_t piece, PieceMesh& out) {
     if (!whole_.calm_normals.empty()) t.calm_normals.push_back(whole_.calm_normals[triangle]);
     t.areas.push_back(whole_.areas[triangle]);
     t.flags.push_back(whole_.flags[triangle]);
+    if (!whole_.polygon.empty()) t.polygon.push_back(whole_.polygon[triangle]);
   }
   add_corners(first_triangle, first_vertex, out);
 }

@@ -58,6 +58,9 @@ Status check_input(const MeshView& mesh) {
   if (!mesh.density.empty() && mesh.density.size() != n / 3) {
     return {ErrorCode::bad_input, "mesh: densities must be empty or 1 a triangle"};
   }
+  if (!mesh.polygons.empty() && mesh.polygons.size() != n / 3) {
+    return {ErrorCode::bad_input, "mesh: polygons must be empty or 1 a triangle"};
+  }
   for (std::size_t t = 0; t < mesh.density.size(); ++t) {
     if (mesh.density[t] > 0 && std::isfinite(mesh.density[t])) continue;
     return {
@@ -333,6 +336,7 @@ Result<Topology> build_topology(WeldedMesh welded, const TopologyOptions& option
   Topology topology;
   take_vertices(mesh, std::move(welded.vertices), topology);
   topology.opposite = std::move(welded.opposite);
+  topology.polygon.assign(mesh.polygons.begin(), mesh.polygons.end());
   // Given charts are kept whatever the normals are.
   std::vector<std::uint32_t> thin = measure_triangles(topology, !options.cut_at_uv_seams);
   if (context.cancelled()) return Status::cancelled();

@@ -12,6 +12,7 @@
 #include "libatlas/charts/mesh/uv_aspects.h"
 #include "libatlas/core/context.h"
 #include "libatlas/core/half_edge.h"
+#include "libatlas/core/no_index.h"
 #include "libatlas/core/status.h"
 #include "libatlas/core/vec.h"
 
@@ -41,6 +42,8 @@ struct Topology {
   std::vector<std::uint8_t> flags;       // one per triangle: a combination of Flag
   std::vector<std::uint32_t> component;  // one per triangle: its piece; kNoIndex if degenerate
   std::uint32_t component_count = 0;
+  // One per triangle: equal for those of one polygon; empty without polygons.
+  std::vector<std::uint32_t> polygon;
   // The number of triangles of the mesh that this is a part of; 0: this is the whole mesh.
   std::size_t whole_triangles = 0;
   // The length of edges that exactly two triangles share without a link, in input units.
@@ -56,6 +59,11 @@ struct Topology {
   bool thin(std::uint32_t t) const { return flags[t] & kThin; }
   const Vec3f& calm_normal(std::uint32_t t) const {
     return calm_normals.empty() ? normals[t] : calm_normals[t];
+  }
+  // Whether h is linked and lies inside a polygon, where no seam may run.
+  bool inner(std::uint32_t h) const {
+    return !polygon.empty() && opposite[h] != kNoIndex &&
+           polygon[h / 3] == polygon[opposite[h] / 3];
   }
   // Returns the corner of the input triangle that working corner h corresponds to.
   std::uint32_t input_corner(std::uint32_t h) const {

@@ -100,7 +100,7 @@ BandPaths::Path BandPaths::find(const Ends& starts, const Ends& goals, double st
     if (!among(first, v) && place != ChartFans::Place::inside) continue;
     fans_.around(out_[v], linked, [&](std::uint32_t g) {
       const std::uint32_t w = fans_.to(g);
-      if (!fans_.linked(g) || level_[w] < 0) return;
+      if (!fans_.linked(g) || level_[w] < 0 || topology_.inner(g)) return;
       const double away = 0.5 * stiffness * (level_[v] + level_[w]) * edge_length(topology_, g);
       const double cost = border_weight(topology_, g, crease_cosine_) + away;
       const double next = so_far + std::round(cost / unit_);

@@ -11,6 +11,7 @@ namespace atlas {
 namespace {
 
 constexpr double kCreaseWeight = 0.25;
+constexpr double kInnerWeight = 1e3;  // of edges inside polygons
 
 class Smoother {
  public:
@@ -100,6 +101,7 @@ class Smoother {
 double border_weight(const Topology& topology, std::uint32_t h, double crease_cosine) {
   const std::uint32_t o = topology.opposite[h];
   const double length = edge_length(topology, h);
+  if (topology.inner(h)) return kInnerWeight * length;
   const double cosine =
       glm::dot(to_dvec(topology.calm_normal(h / 3)), to_dvec(topology.calm_normal(o / 3)));
   return cosine < crease_cosine ? kCreaseWeight * length : length;

@@ -19,7 +19,7 @@ void move_triangle(const Topology& topology, std::uint32_t h, Partition& partiti
 bool removable(const Topology& topology, const Partition& partition, std::uint32_t t);
 
 // Returns what a linked edge costs in a border: its length, or a quarter of it if the fold is
-// sharper than the crease angle.
+// sharper than the crease angle; many times as much inside a polygon.
 double border_weight(const Topology& topology, std::uint32_t half_edge, double crease_cosine);
 
 // A limit on charts' normals. No limit if `axes` is empty.

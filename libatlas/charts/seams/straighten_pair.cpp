@@ -68,8 +68,19 @@ class PairStraightener {
   // Returns the triangle's index in the band; kNoIndex: not in the band.
   std::uint32_t place(std::uint32_t t) const { return side(t) == 2 ? kNoIndex : places_[t]; }
 
-  // Adds t to the band, unless it lies at a seam of its chart with itself, or at a hub.
+  // Adds t to the band, with the rest of its polygon, unless it lies at a seam of its chart with
+  // itself, or at a hub.
   void reach(std::uint32_t t) {
+    const std::size_t first = band_.size();
+    reach_one(t);
+    if (topology_.polygon.empty()) return;
+    for (std::size_t i = first; i < band_.size(); ++i) {
+      for (std::uint32_t h = 3 * band_[i]; h < 3 * band_[i] + 3; ++h)
+        if (topology_.inner(h)) reach_one(topology_.opposite[h] / 3);
+    }
+  }
+
+  void reach_one(std::uint32_t t) {
     if (side(t) == 2 || places_[t] != kNoIndex || partition_.seams[t] || at_hub(t)) return;
     places_[t] = static_cast<std::uint32_t>(band_.size());
     band_.push_back(t);
@@ -207,7 +218,9 @@ class PairStraightener {
     if (o == kNoIndex) return;
     const bool within = in_band(o / 3);
     if (within && o < h) return;  // added once for both directions
-    const std::int32_t w = steps(border_weight(topology_, h, crease_cosine_) / unit);
+    const std::int32_t w = topology_.inner(h)
+                               ? MinCut::kForever
+                               : steps(border_weight(topology_, h, crease_cosine_) / unit);
     if (within) {
       cut_.set_edge({i, h % 3}, {places_[o / 3] - first_, o % 3}, w);
     } else if (const std::uint32_t there = side(o / 3); there < 2) {

@@ -180,7 +180,7 @@ class PagesWriter {
 Result<WorldFile> write_gltf(const World& world, const fs::path& path, AtomicFiles& files,
                              const Context& context) {
   if (Status s = check_world(world); !s.ok()) return s;
-  if (Status s = check_no_tiles(world); !s.ok()) return s;
+  if (Status s = check_only_triangles(world); !s.ok()) return s;
   if (world.scene != nullptr)
     return world.scene->source ? write_gltf_file(world, path, files, context)
                                : write_gltf_scene(world, path, files, context);

@@ -32,9 +32,10 @@ namespace {
 
 constexpr int kFormat = 1;
 constexpr std::string_view kLightType = "application/x-atlas-light";  // of write_light_page()
-// Positions are whole steps: of half a millimetre where the visitor stands among the surfaces, else
-// a 65535th of the box, which no screen shows.
-constexpr double kStepMetres = 0.0005, kStepsOfBox = 65535, kMostSteps = 1 << 24;
+// Positions are whole steps: of a 65535th of the box, and where the visitor stands among the surfaces
+// of a 64th of a millimetre. Steps of 0.1 mm move the outlines of lamps over so many pixels that these
+// are four fifths of a picture's error (5 dB), and save 2 % of the bytes.
+constexpr double kStepMetres = 1.0 / 65536, kStepsOfBox = 65535, kMostSteps = 1 << 24;
 constexpr std::uint32_t kUvSteps = 65535;
 // They need each other in this order.
 constexpr std::string_view kScripts[] = {
@@ -267,7 +268,7 @@ Status write_images(TextFile& file, const World& world) {
 Result<WorldFile> write_html(const World& world, const fs::path& path, AtomicFiles& files,
                              const Context& context) {
   if (Status s = check_world(world); !s.ok()) return s;
-  if (Status s = check_no_tiles(world); !s.ok()) return s;
+  if (Status s = check_only_triangles(world); !s.ok()) return s;
   if (world.scene != nullptr)
     return Status(ErrorCode::bad_option, path.string() +
                                              ": a page of HTML shows pages of light, and cannot "

@@ -2,6 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <functional>
+#include <numeric>
+#include <vector>
+
 #include "libatlas/exporters/world.h"
 #include "libatlas/scene/obj/obj_names.h"
 #include "libatlas/scene/scene.h"
@@ -56,9 +60,16 @@ void write_obj_uvs(TextFile& file, const World& world, std::span<const std::uint
 }
 
 void write_obj_faces(TextFile& file, const ObjCorners& corners, const Context& context) {
-  file.write_items(corners.points.size() / 3, context, [&](TextBuffer& out, std::size_t t) {
+  std::vector<std::size_t> first(corners.sizes.size() + 1, 0);
+  std::partial_sum(corners.sizes.begin(), corners.sizes.end(), first.begin() + 1,
+                   std::plus<std::size_t>());
+  const bool triangles = corners.sizes.empty();
+  const std::size_t faces = triangles ? corners.points.size() / 3 : corners.sizes.size();
+  file.write_items(faces, context, [&](TextBuffer& out, std::size_t f) {
     out.character('f');
-    for (std::size_t k = 3 * t; k < 3 * t + 3; ++k) {
+    const std::size_t begin = triangles ? 3 * f : first[f],
+                      end = triangles ? 3 * f + 3 : first[f + 1];
+    for (std::size_t k = begin; k < end; ++k) {
       out.character(' ');
       out.number(corners.points[k] + 1);
       out.character('/');

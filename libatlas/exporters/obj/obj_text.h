@@ -22,9 +22,10 @@ void write_obj_points(TextFile& file, const World& world, std::span<const std::u
 void write_obj_uvs(TextFile& file, const World& world, std::span<const std::uint32_t> uvs,
                    const Context& context);
 
-// Corners as faces refer to them: 3 per triangle, counted from 0; `normals` may be empty.
+// Corners as faces refer to them, counted from 0; `normals` may be empty. `sizes`: the corners of
+// each face; empty: triangles.
 struct ObjCorners {
-  std::span<const std::uint32_t> points, uvs, normals = {};
+  std::span<const std::uint32_t> points, uvs, normals = {}, sizes = {};
 };
 void write_obj_faces(TextFile& file, const ObjCorners& corners, const Context& context);
 

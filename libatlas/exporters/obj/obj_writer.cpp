@@ -29,15 +29,16 @@ void write_geometry(TextFile& file, const World& world, WorldFile& result, const
   write_obj_uvs(file, world, uvs.used, context);
   std::size_t corner = 0;
   for (std::size_t i = 0; i < world.pages.size(); ++i) {
-    const std::size_t triangles = world.pages[i].indices.size() / 3;
-    if (triangles == 0) continue;
+    const std::size_t corners = world.pages[i].indices.size();
+    if (corners == 0) continue;
+    const std::span<const std::uint32_t> sizes = world.pages[i].face_sizes;
     file.write(fmt::format("o page{0}\nusemtl page{0}\n", i));
     const auto of_page = [&](const std::vector<std::uint32_t>& indices) {
-      return std::span(indices).subspan(corner, 3 * triangles);
+      return std::span(indices).subspan(corner, corners);
     };
-    write_obj_faces(file, {of_page(points.indices), of_page(uvs.indices)}, context);
-    corner += 3 * triangles;
-    result.triangles += triangles;
+    write_obj_faces(file, {of_page(points.indices), of_page(uvs.indices), {}, sizes}, context);
+    corner += corners;
+    result.triangles += sizes.empty() ? corners / 3 : corners - 2 * sizes.size();
     context.report("writing the world", double(i + 1) / double(world.pages.size()));
   }
   result.vertices = points.used.size();

@@ -387,6 +387,7 @@ Result<LoadedScene> SceneBuilder::finish(const ReadOptions& options, const Conte
   loaded.unread_files = unread_files();
   scene.indices = std::move(indices_);
   place_normals(scene);
+  scene.polygons = std::move(polygons_);
   scene.source = std::move(source);
   scene.texcoord_indices = std::move(texcoord_indices_);
   scene.texcoords = std::move(texcoords);

@@ -12,9 +12,9 @@
 #include <string>
 #include <vector>
 
+#include "libatlas/core/polygon.h"
 #include "libatlas/core/vec.h"
 #include "libatlas/scene/building/coloured_points.h"
-#include "libatlas/scene/building/polygon.h"
 #include "libatlas/scene/files/mtl_names.h"
 #include "libatlas/scene/reader.h"
 #include "libatlas/scene/uv_page.h"
@@ -89,6 +89,7 @@ class SceneBuilder {
   DefectReport defects;
   bool wants_textures = true;                     // false: `textures` need not hold any bytes
   bool wants_normals = false;                     // false: normals are ignored, whatever they hold
+  bool wants_polygons = false;                    // ReadOptions::polygons
   bool wants_rest = false;                        // ReadOptions::rest
   bool wants_lightmap = false;                    // ReadOptions::lightmap
   float light_white = 0;                          // SceneLightmap::white, of light_page
@@ -149,14 +150,17 @@ class SceneBuilder {
     }
     if (!all_given(face.uvs, texcoords.size(), kTexcoordDefects, place)) face.uvs = {};
     if (!all_given(face.normals, normals.size(), kNormalDefects, place)) face.normals = {};
-    if (vertices.size() == 3) return add_triangle(face, {0, 1, 2});
+    if (vertices.size() == 3) {
+      triangles_.assign(1, {0, 1, 2});
+      return add_triangles(face);
+    }
     if (goes_round_and_round(vertices)) return drop(DefectKind::polygon_repeated, place);
     corners_.clear();
     for (const std::int64_t v : vertices) corners_.push_back(positions[v]);
     if (!triangulate(corners_, triangles_, limits)) {
       defects.add(DefectKind::polygon_too_large, place);
     }
-    for (const auto& t : triangles_) add_triangle(face, t);
+    add_triangles(face);
   }
 
   std::size_t triangle_count() const { return indices_.size() / 3; }
@@ -196,6 +200,11 @@ class SceneBuilder {
     }
     if (absent != 0 && absent != indices.size()) defects.add(kinds.partial, place);
     return absent == 0;
+  }
+
+  void add_triangles(const FaceCorners& face) {
+    for (const auto& t : triangles_) add_triangle(face, t);
+    if (wants_polygons) polygons_.add(face.vertices.size(), triangles_);
   }
 
   void add_triangle(const FaceCorners& face, std::array<std::uint32_t, 3> corners) {
@@ -247,6 +256,7 @@ class SceneBuilder {
   std::vector<std::uint32_t> triangle_material_, triangle_object_;
   std::vector<Vec3d> corners_;
   std::vector<std::array<std::uint32_t, 3>> triangles_;
+  PolygonCorners polygons_;
   std::map<std::filesystem::path, std::int32_t> texture_files_;  // by texture_of()'s argument
 };
 

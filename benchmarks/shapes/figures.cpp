@@ -1,4 +1,4 @@
-#include "benchmarks/charts/charts_figures.h"
+#include "benchmarks/shapes/figures.h"
 
 #include <fmt/format.h>
 
@@ -7,13 +7,43 @@
 #include <cmath>
 #include <numbers>
 
-#include "benchmarks/support/work.h"
+#include "benchmarks/shapes/kinds.h"
 #include "libatlas/core/glm_bridge.h"
 
 namespace atlas::bench {
-namespace {
 
 using test::Shape;
+
+Shape turned(const std::vector<Vec2d>& profile, int around) {
+  std::vector<Vec2d> points;
+  for (std::size_t i = 0; i < profile.size(); ++i) {
+    const Vec2d a = profile[i], b = profile[(i + 1) % profile.size()];
+    const double arc = 2 * std::numbers::pi * std::max(a.x, b.x) / around;
+    const int pieces = std::max(1, int(std::lround(std::hypot(b.x - a.x, b.y - a.y) / arc / 2)));
+    for (int k = 0; k < pieces; ++k) {
+      const double t = double(k) / pieces;
+      points.push_back({a.x + t * (b.x - a.x), a.y + t * (b.y - a.y)});
+    }
+  }
+  Shape shape;
+  const auto rows = std::uint32_t(points.size()), columns = std::uint32_t(around);
+  for (const Vec2d& p : points)
+    for (std::uint32_t k = 0; k < columns; ++k) {
+      const double angle = 2 * std::numbers::pi * k / columns;
+      shape.positions.push_back(
+          {float(p.x * std::cos(angle)), float(p.x * std::sin(angle)), float(p.y)});
+    }
+  for (std::uint32_t r = 0; r < rows; ++r)
+    for (std::uint32_t k = 0; k < columns; ++k) {
+      const std::uint32_t s = (r + 1) % rows, l = (k + 1) % columns;
+      const std::uint32_t a = r * columns + k, b = r * columns + l, c = s * columns + l,
+                          d = s * columns + k;
+      for (const std::uint32_t v : {a, b, c, a, c, d}) shape.indices.push_back(v);
+    }
+  return shape;
+}
+
+namespace {
 
 double distance(const Blob& blob, const glm::dvec3& p) {
   const glm::dvec3 a = to_glm(blob.a), d = to_glm(blob.b) - a;
@@ -172,37 +202,6 @@ std::vector<Blob> bust() {
     b.push_back({{x, 0.15, 0.58 - 0.4 * x * x}, {0.7 * x + 0.03, 0.19, 0.42}, 0.018, 0.012});
   }
   return b;
-}
-
-// Returns a closed surface of revolution about z. The profile is a closed polygon (radius, height),
-// anticlockwise. Each of its sides is divided into pieces about twice as long as the arcs around.
-Shape turned(const std::vector<Vec2d>& profile, int around) {
-  std::vector<Vec2d> points;
-  for (std::size_t i = 0; i < profile.size(); ++i) {
-    const Vec2d a = profile[i], b = profile[(i + 1) % profile.size()];
-    const double arc = 2 * std::numbers::pi * std::max(a.x, b.x) / around;
-    const int pieces = std::max(1, int(std::lround(std::hypot(b.x - a.x, b.y - a.y) / arc / 2)));
-    for (int k = 0; k < pieces; ++k) {
-      const double t = double(k) / pieces;
-      points.push_back({a.x + t * (b.x - a.x), a.y + t * (b.y - a.y)});
-    }
-  }
-  Shape shape;
-  const auto rows = std::uint32_t(points.size()), columns = std::uint32_t(around);
-  for (const Vec2d& p : points)
-    for (std::uint32_t k = 0; k < columns; ++k) {
-      const double angle = 2 * std::numbers::pi * k / columns;
-      shape.positions.push_back(
-          {float(p.x * std::cos(angle)), float(p.x * std::sin(angle)), float(p.y)});
-    }
-  for (std::uint32_t r = 0; r < rows; ++r)
-    for (std::uint32_t k = 0; k < columns; ++k) {
-      const std::uint32_t s = (r + 1) % rows, l = (k + 1) % columns;
-      const std::uint32_t a = r * columns + k, b = r * columns + l, c = s * columns + l,
-                          d = s * columns + k;
-      for (const std::uint32_t v : {a, b, c, a, c, d}) shape.indices.push_back(v);
-    }
-  return shape;
 }
 
 Shape shaft(std::uint64_t triangles) {

@@ -1,4 +1,4 @@
-#include "libatlas/scene/building/polygon.h"
+#include "libatlas/core/polygon.h"
 
 #include <algorithm>
 #include <bit>
@@ -9,6 +9,7 @@
 
 #include "libatlas/core/counting_sort.h"
 #include "libatlas/core/glm_bridge.h"
+#include "libatlas/core/half_edge.h"
 #include "libatlas/core/no_index.h"
 #include "libatlas/core/predicates.h"
 
@@ -398,6 +399,23 @@ bool triangulate(std::span<const Vec3d> corners,
   }
   for (std::uint32_t i = 1; i + 1 < n; ++i) triangles.push_back({0, i, i + 1});
   return round;
+}
+
+void PolygonCorners::add(std::size_t corners, std::span<const std::array<std::uint32_t, 3>> added) {
+  if (first.empty()) first.push_back(0);
+  const std::uint32_t begin = first.back();
+  for (const auto& t : added) {
+    polygon.push_back(std::uint32_t(count()));
+    for (const std::uint32_t c : t) triangles.push_back(begin + c);
+  }
+  first.push_back(begin + std::uint32_t(corners));
+}
+
+std::uint32_t side_of(const PolygonCorners& polygons, std::uint32_t h) {
+  const std::uint32_t from = polygons.triangles[h], to = polygons.triangles[next_half_edge(h)],
+                      polygon = polygons.polygon[h / 3];
+  const std::uint32_t first = polygons.first[polygon], end = polygons.first[polygon + 1];
+  return to == (from + 1 == end ? first : from + 1) ? from : kNoIndex;
 }
 
 bool goes_round_and_round(std::span<const std::int64_t> vertices) {

@@ -1,4 +1,4 @@
-#include "libatlas/scene/building/polygon.h"
+#include "libatlas/core/polygon.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-// Internal: cuts polygons in space into triangles.
+// Polygons of a mesh and the triangles that they are cut into; the one way to cut them.
 #pragma once
 
 #include <array>
@@ -22,6 +22,21 @@ namespace atlas {
 // not if `limited` is false.
 bool triangulate(std::span<const Vec3d> corners,
                  std::vector<std::array<std::uint32_t, 3>>& triangles, bool limited = true);
+
+// The polygons of a mesh, and which of their corners its triangles have.
+struct PolygonCorners {
+  std::vector<std::uint32_t> first = {};      // one per polygon, and the end: its first corner
+  std::vector<std::uint32_t> polygon = {};    // one per triangle
+  std::vector<std::uint32_t> triangles = {};  // three per triangle: corners of the polygons
+
+  std::size_t count() const { return first.empty() ? 0 : first.size() - 1; }
+  // Adds a polygon of `corners` corners that is cut into these triangles of corner numbers.
+  void add(std::size_t corners, std::span<const std::array<std::uint32_t, 3>> triangles);
+};
+
+// Returns the corner of the polygons at which the side of a polygon begins that half-edge h of the
+// triangles is; kNoIndex for an edge inside a polygon.
+std::uint32_t side_of(const PolygonCorners& polygons, std::uint32_t h);
 
 // Returns whether a polygon names its vertices, which are given by their numbers, so often that it
 // cannot be the outline of an area. Such an outline may come back to a vertex where it is joined to

@@ -22,8 +22,12 @@ inline constexpr const char* kFigures =
 //   terraces     terrain with ridges and steps
 //   shaft        a turned part: steps, grooves, a cone and a bore, in metres (0.2 m long)
 //   bracket      boxes and bores of one CAD assembly, each a closed piece, in metres
-// Any other name goes to make_shape (support/work.h). Errors: bad_option.
+// Any other name goes to make_shape (kinds.h). Errors: bad_option.
 Result<test::Shape> make_figure(const std::string& name);
+
+// Returns a closed surface of revolution about z. The profile is a closed polygon (radius, height),
+// anticlockwise; each side is divided into pieces about twice as long as the arcs around.
+test::Shape turned(const std::vector<Vec2d>& profile, int around);
 
 // Returns the surface where a field similar to a signed distance changes sign, by naive surface
 // nets (Gibson 1998). Each cell of the grid that it crosses gets one vertex, at the mean of the
