@@ -8,6 +8,9 @@
 #include <windows.h>
 // windows.h comes first.
 #include <psapi.h>
+#undef far
+#undef near
+#undef small
 
 #include "libatlas/core/clock.h"
 #include "libatlas/core/process.h"

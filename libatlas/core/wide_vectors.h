@@ -27,8 +27,9 @@ using QuadInPlace =
 
 // Clang gets no wide vectors: where QuadInPlace is a template argument or behind a reference, Clang
 // forgets that it need not be aligned to 32 bytes, and reads it with instructions that require it.
+// Neither does Windows, on whose stack GCC does not align them.
 // LIBATLAS_NARROW_VECTORS compiles what other processors execute (the preset tsan does).
-#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && \
+#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && !defined(_WIN32) && \
     !defined(LIBATLAS_NARROW_VECTORS)
 #define ATLAS_WIDE [[gnu::target("avx2")]]
 inline const bool has_wide_vectors = __builtin_cpu_supports("avx2");
