@@ -91,16 +91,17 @@ export class Library {
     const own = [];
     const guarded = (callback) => {
       try {
-        return callback();
+        callback();
       } catch (error) {
         own.push(error);
-        return false;
       }
     };
     const listener = {
-      progress: (stage, fraction) =>
-        own.length > 0 || (onProgress && guarded(() => onProgress(stage, fraction)) === false) || signal?.aborted,
-      warning: (line) => onWarning && guarded(() => onWarning(line)),
+      progress: (stage, fraction) => {
+        guarded(() => onProgress?.(stage, fraction));
+        return own.length > 0 || signal?.aborted;  // cancels
+      },
+      warning: (line) => guarded(() => onWarning?.(line)),
     };
     this.#running = true;
     try {
