@@ -12,7 +12,7 @@ import pathlib
 import re
 import sys
 
-FOLDERS = ["param", "charts", "pack"]
+FOLDERS = ["param", "charts", "pack", "unwrap"]
 
 COMMENT_OR_STRING = re.compile(r'//[^\n]*|/\*.*?\*/|"(?:\\.|[^"\\\n])*"|\'(?:\\.|[^\'\\\n])\'', re.S)
 DECLARATION = re.compile(
