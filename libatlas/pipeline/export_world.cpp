@@ -22,6 +22,7 @@
 #include "libatlas/pipeline/layout_options.h"
 #include "libatlas/pipeline/lightmap.h"
 #include "libatlas/pipeline/longest_sides.h"
+#include "libatlas/pipeline/mesh_uvs.h"
 #include "libatlas/pipeline/more_mip_levels.h"
 #include "libatlas/pipeline/report_pictures.h"
 #include "libatlas/pipeline/size_textures.h"
@@ -78,19 +79,8 @@ class Export {
     if (plan_.bake) {
       if (Status s = expose(); !s.ok()) return s;
     }
-    if (Status s = cut_charts(); !s.ok()) return s;
-    if (plan_.bake) {
-      if (Status s = cut_long_charts(); !s.ok()) return s;
-      if (Status s = size_all_textures(); !s.ok()) return s;
-    }
-    if (Status s = pack(); !s.ok()) return s;
-    if (plan_.bake) {
-      if (Status s = bake(); !s.ok()) return s;
-    }
-    if (plan_.simplify) {
-      if (Status s = simplify(); !s.ok()) return s;
-    }
-    if (Status s = finish(); !s.ok()) return s;
+    if (Status s = options_.mesh_uvs == MeshUvs::places ? make_pages() : unwrap_meshes(); !s.ok())
+      return s;
     if (Status s = write(); !s.ok()) return s;
     report_.carried_out = true;
     for (std::string& line : advice_on(report_, options_))
@@ -116,6 +106,37 @@ class Export {
   }
 
  private:
+  // All stages between exposure and writing.
+  Status make_pages() {
+    if (Status s = cut_charts(); !s.ok()) return s;
+    if (plan_.bake) {
+      if (Status s = cut_long_charts(); !s.ok()) return s;
+      if (Status s = size_all_textures(); !s.ok()) return s;
+    }
+    if (Status s = pack(); !s.ok()) return s;
+    if (plan_.bake) {
+      if (Status s = bake(); !s.ok()) return s;
+    }
+    if (plan_.simplify) {
+      if (Status s = simplify(); !s.ok()) return s;
+    }
+    return finish();
+  }
+
+  // The same for uvs of meshes instead of places (MeshUvs).
+  Status unwrap_meshes() {
+    const Context& context = record_.begin("charts");
+    Result<MeshUvsOfScene> made = unwrap_meshes_once(scene_, options_, context);
+    if (!made.ok()) return made.status();
+    mesh_uvs_ = std::move(*made);
+    report_unwrapped(mesh_uvs_->all, scene_.metres_per_unit, report_);
+    report_.triangles_out = scene_.triangle_count();
+    record_.finish({scene_.triangle_count(), report_.charts.size(), "charts",
+                    fmt::format("L2 {:.4f}, {:.0f} % used by charts", report_.distortion.stretch_l2,
+                                100 * report_.uv_utilization)});
+    return {};
+  }
+
   // Without the module for such image files, all stages up to the first page would run in vain.
   Status check_module() const {
     return plan_.bake && options_.exr ? check_image_module(options_.target.string()) : Status();
@@ -282,12 +303,12 @@ class Export {
 
   Result<PageLayout> fill_plain(const PlainUvs& uvs, const LayoutOptions& options,
                                 const Context& context) {
-    if (!options_.keep_scene) {
+    if (!options_.keep_scene && !options_.plain_part_gaps) {
       Result<PageLayout> layout = fill_pages(uvs, options, charts_, context);
       report_charts();
       return layout;
     }
-    // With keep_scene, the uvs are for a lightmap.
+    // These uvs are for a lightmap.
     Result<PagesOfParts> apart = fill_pages_apart(uvs, options, charts_, context);
     report_charts();
     if (!apart.ok()) return apart.status();
@@ -427,13 +448,14 @@ class Export {
                        options_,
                        charts_,
                        layout_,
-                       finished_->mesh,
-                       std::move(finished_->uvs),
+                       finished_ ? finished_->mesh : WorldMesh{},
+                       finished_ ? std::move(finished_->uvs) : std::vector<Vec2f>(),
                        plan_.bake,
                        sampler_ ? &*sampler_ : nullptr,
                        image_sources_,
                        error_,
-                       view_};
+                       view_,
+                       mesh_uvs_ ? &*mesh_uvs_ : nullptr};
     Result<StageOutcome> written = write_export(std::move(made), files_, report_, context);
     if (!written.ok()) return written.status();
     record_.finish(std::move(*written));
@@ -458,6 +480,7 @@ class Export {
   PageLayout layout_;
   std::optional<SimplifiedMesh> coarse_;
   std::optional<FinishedMesh> finished_;
+  std::optional<MeshUvsOfScene> mesh_uvs_;            // in place of all these, with MeshUvs
   std::vector<std::filesystem::path> image_sources_;  // where the pages' images lie until commit
   std::vector<FidelityMeter::Cells> error_;           // one per page, or none
   AtomicFiles files_;

@@ -2,6 +2,7 @@
 
 #include <utility>
 
+#include "libatlas/pipeline/layout_options.h"
 #include "libatlas/uvs/finish_uvs.h"
 #include "libatlas/uvs/written_stretch.h"
 
@@ -14,8 +15,10 @@ FinishedMesh finish_mesh(const MeshToFinish& made, ExportReport& report, const C
                             : result.fine.view();
   const PlacedCharts placed{made.charts, made.layout.placements, made.layout.pages};
   const std::int32_t mip_levels = report.mip_levels;
-  FinishedUvs finished = finish_uvs(placed, result.mesh.uv_indices,
-                                    {made.baked, mip_levels, gutter_pad(mip_levels)}, context);
+  FinishedUvs finished = finish_uvs(
+      placed, result.mesh.uv_indices,
+      {made.baked, mip_levels, made.baked ? gutter_pad(mip_levels) : plain_padding(made.options)},
+      context);
   MeshView shape;
   shape.positions = made.scene.positions;
   const WrittenStretch written =

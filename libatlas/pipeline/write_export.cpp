@@ -125,7 +125,28 @@ PageLight light_of(const ExportToWrite& made, const ExportReport& report) {
   return light;
 }
 
+// The scene with uvs of its meshes (MeshUvs).
+World world_of_meshes(const ExportToWrite& made) {
+  const ExportOptions& options = made.options;
+  World world;
+  world.origin = made.scene.origin;
+  world.positions = made.scene.positions;
+  world.uvs = made.mesh_uvs->uvs;
+  world.instances = made.mesh_uvs->instances;
+  world.pages.resize(1);
+  world.pages[0].indices = made.scene.indices;
+  world.pages[0].uv_indices = made.mesh_uvs->uv_indices;
+  world.scene = &made.scene;
+  world.uv_set = options.uv_set;
+  world.up = options.up;
+  world.title = options.target.stem().string();
+  world.metres_per_unit = made.scene.metres_per_unit;
+  if (options.compress) world.compress_slip = 0;
+  return world;
+}
+
 World make_world(ExportToWrite& made, ExportReport& report, const Context& context) {
+  if (made.mesh_uvs) return world_of_meshes(made);
   const ExportOptions& options = made.options;
   const PlacedCharts placed{made.charts, made.layout.placements, made.layout.pages};
   World world = assemble_world(made.scene, placed, made.mesh, std::move(made.uvs));

@@ -12,6 +12,7 @@
 #include "libatlas/core/context.h"
 #include "libatlas/core/status.h"
 #include "libatlas/pipeline/export_options.h"
+#include "libatlas/pipeline/mesh_uvs.h"
 #include "libatlas/pipeline/stage_recorder.h"
 #include "libatlas/report/export_report.h"
 #include "libatlas/scene/reader.h"
@@ -34,7 +35,8 @@ struct ExportToWrite {
   // One per page with an image: where it lies until the files are committed.
   std::span<const std::filesystem::path> image_sources = {};
   std::span<const FidelityMeter::Cells> error = {};  // one per page, or none
-  std::optional<FileView> view = {};  // where a viewer of the scene's own file begins
+  std::optional<FileView> view = {};         // where a viewer of the scene's own file begins
+  const MeshUvsOfScene* mesh_uvs = nullptr;  // in place of charts, layout, mesh and uvs
 };
 
 // Writes the world and commits `files`, which hold the pages' images. Adds to the report what was
