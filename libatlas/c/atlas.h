@@ -5,7 +5,7 @@
 // that were compiled with an earlier header keep working, and so do those compiled with a later one
 // as long as they do not use what is new. What is passed in gets its size and its defaults from the
 // function with its name and _init, as in libatlas_mesh_init(&mesh, sizeof mesh). What is handed
-// out only needs the size: uvs.size = sizeof uvs. The structs of int32_t alone stay
+// out only needs the size: uvs.size = sizeof uvs. Structs that lie in arrays have no size, and stay
 // as they are.
 //
 // Errors: calls that can fail return a status. They change nothing then, and write null or 0 to
@@ -142,6 +142,17 @@ LIBATLAS_API void libatlas_atlas_destroy(libatlas_atlas* atlas);
 LIBATLAS_API libatlas_status libatlas_add_mesh(libatlas_context* context, libatlas_atlas* atlas,
                                                const libatlas_mesh* mesh, uint32_t* number);
 
+// Adds a copy of a mesh that is shown `count` times, at least once. It is unwrapped once, and each
+// instance gets a place for a copy of its uvs, larger by its relative linear density; null: all 1.
+// libatlas_get_instances() has the places. Every other mesh of the atlas then gets a rectangle of
+// its own, too. Status: that of libatlas_add_mesh(); BAD_INPUT with the instance for a density that
+// is not finite and > 0, and for no instance; UNSUPPORTED for 2^30 instances.
+LIBATLAS_API libatlas_status libatlas_add_instances(libatlas_context* context,
+                                                    libatlas_atlas* atlas,
+                                                    const libatlas_mesh* mesh,
+                                                    const float* densities, size_t count,
+                                                    uint32_t* number);
+
 // ---- Unwrapping ----
 
 typedef int32_t libatlas_preset;
@@ -227,6 +238,24 @@ typedef struct libatlas_mesh_uvs {
 LIBATLAS_API libatlas_status libatlas_get_mesh(libatlas_context* context,
                                                const libatlas_unwrapped* unwrapped, uint32_t mesh,
                                                libatlas_mesh_uvs* uvs);
+
+// Where an instance has the mesh's uvs: at uv * scale + offset of its page.
+typedef struct libatlas_instance {
+  uint32_t page;
+  float scale[2], offset[2];  // 0..1 over the page, origin bottom left
+} libatlas_instance;
+
+// The instances of a mesh that libatlas_add_instances() has added; none of other meshes. The uvs of
+// the mesh are 0..1 over a rectangle of its own, and its triangle_page is that of the first
+// instance.
+typedef struct libatlas_instances {
+  size_t size;
+  size_t instance_count;
+  const libatlas_instance* instances;
+} libatlas_instances;
+LIBATLAS_API libatlas_status libatlas_get_instances(libatlas_context* context,
+                                                    const libatlas_unwrapped* unwrapped,
+                                                    uint32_t mesh, libatlas_instances* instances);
 
 // Uvs of a mesh of polygons, one per corner. No seam runs inside a polygon, except in those listed
 // as cut: they do not lie flat in one piece within the bounds of the options, or given uvs cut

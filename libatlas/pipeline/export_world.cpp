@@ -17,6 +17,7 @@
 #include "libatlas/pipeline/chart_stages.h"
 #include "libatlas/pipeline/export_job.h"
 #include "libatlas/pipeline/finish_mesh.h"
+#include "libatlas/pipeline/mesh_uvs.h"
 #include "libatlas/pipeline/pack_stages.h"
 #include "libatlas/pipeline/page_stages.h"
 #include "libatlas/pipeline/plan.h"
@@ -48,6 +49,10 @@ Result<PackedCharts> make_and_pack(ExportJob& job, const SceneLight* light) {
 }
 
 Status run_stages(ExportJob& job) {
+  if (job.options.mesh_uvs != MeshUvs::places) {
+    const Result<MeshUvsOfScene> made = unwrap_meshes_once(job);
+    return made.ok() ? write_export(job, *made) : made.status();
+  }
   std::optional<SceneLight> light;
   if (job.plan.bake) {
     Result<SceneLight> exposed = expose(job);

@@ -294,6 +294,12 @@ Status check_plan(const ExportPlan& plan, const ExportOptions& options) {
             "ExportOptions::udim: this scene carries light, whose pages are images with materials "
             "of their own (add ExportOptions::charts_only, or leave ExportOptions::udim out)"};
   }
+  if (options.mesh_uvs != MeshUvs::places && plan.bake) {
+    return {
+        ErrorCode::bad_option,
+        "ExportOptions::mesh_uvs: this scene carries light, and each place of a mesh has its own "
+        "(add ExportOptions::charts_only, or leave ExportOptions::mesh_uvs out)"};
+  }
   if (options.polygons && plan.bake) {
     return {ErrorCode::bad_option,
             "ExportOptions::polygons: this scene carries light, which is baked for triangles (add "

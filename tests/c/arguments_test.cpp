@@ -181,7 +181,11 @@ TEST_F(RandomArguments, OfMeshesAndUnwrapping) {
     ASSERT_EQ(libatlas_atlas_create(context_, &atlas), LIBATLAS_OK);
     for (std::uint32_t n = below(4); n-- > 0;) {
       const libatlas_mesh m = mesh();
-      count(libatlas_add_mesh(context_, atlas, &m, nullptr));
+      if (often())
+        count(libatlas_add_mesh(context_, atlas, &m, nullptr));
+      else
+        count(libatlas_add_instances(context_, atlas, &m, often() ? densities_.data() : nullptr,
+                                     below(5), nullptr));
     }
     const libatlas_unwrap_options o = options();
     libatlas_unwrapped* unwrapped = nullptr;
@@ -192,6 +196,13 @@ TEST_F(RandomArguments, OfMeshesAndUnwrapping) {
     if (count(libatlas_get_mesh(context_, unwrapped, below(3), &uvs))) {
       for (std::size_t k = 0; k < 2 * uvs.vertex_count; ++k)
         EXPECT_TRUE(uvs.uvs[k] >= 0 && uvs.uvs[k] <= 1) << uvs.uvs[k];
+    }
+    libatlas_instances instances = {};
+    instances.size = often() ? sizeof instances : below(50);
+    if (count(libatlas_get_instances(context_, unwrapped, below(3), &instances))) {
+      for (std::size_t k = 0; k < instances.instance_count; ++k) {
+        EXPECT_TRUE(instances.instances[k].scale[0] >= 0 && instances.instances[k].scale[1] <= 1);
+      }
     }
     libatlas_polygon_uvs polygons = {};
     polygons.size = often() ? sizeof polygons : below(200);

@@ -160,6 +160,54 @@ TEST_F(C, PolygonsComeBackAsFromTheAtlas) {
   refused("polygon_count is 0, but polygon_sizes is given");
 }
 
+TEST_F(C, InstancesComeBackAsFromTheAtlas) {
+  const std::vector<float> densities{1, 2, 0.5f};
+  Atlas expected;
+  ASSERT_TRUE(expected.add_instances(view_of(shapes_[0]), 3, densities).ok());
+  ASSERT_TRUE(expected.add(view_of(shapes_[1])).ok());
+  const auto result = expected.unwrap({}, {});
+  ASSERT_TRUE(result.ok());
+  const auto atlas = atlas_of({});
+  const libatlas_mesh mesh = mesh_of(shapes_[0]), once = mesh_of(shapes_[1]);
+  std::uint32_t number = 9;
+  ASSERT_EQ(libatlas_add_instances(context(), atlas.get(), &mesh, densities.data(), 3, &number),
+            LIBATLAS_OK)
+      << message();
+  EXPECT_EQ(number, 0u);
+  ASSERT_EQ(libatlas_add_mesh(context(), atlas.get(), &once, nullptr), LIBATLAS_OK);
+  const auto unwrapped = unwrap(atlas.get());
+  auto instances = sized<libatlas_instances>();
+  ASSERT_EQ(libatlas_get_instances(context(), unwrapped.get(), 0, &instances), LIBATLAS_OK);
+  ASSERT_EQ(instances.instance_count, 3u);
+  for (std::size_t i = 0; i < 3; ++i) {
+    const MeshInstance& own = result->mesh(0).instances[i];
+    const libatlas_instance& at = instances.instances[i];
+    EXPECT_EQ(at.page, own.page);
+    EXPECT_EQ((Vec2f{at.scale[0], at.scale[1]}), own.scale);
+    EXPECT_EQ((Vec2f{at.offset[0], at.offset[1]}), own.offset);
+  }
+  auto uvs = sized<libatlas_mesh_uvs>();
+  ASSERT_EQ(libatlas_get_mesh(context(), unwrapped.get(), 0, &uvs), LIBATLAS_OK);
+  EXPECT_EQ(std::memcmp(uvs.uvs, result->mesh(0).uvs.data(), result->mesh(0).uvs.size_bytes()), 0);
+  ASSERT_EQ(libatlas_get_instances(context(), unwrapped.get(), 1, &instances), LIBATLAS_OK);
+  EXPECT_EQ(instances.instance_count, 0u);
+
+  const auto refused = [&](const float* d, std::size_t count, const char* text) {
+    EXPECT_EQ(libatlas_add_instances(context(), atlas.get(), &mesh, d, count, nullptr),
+              LIBATLAS_BAD_INPUT);
+    EXPECT_NE(message().find(text), std::string::npos) << message();
+  };
+  refused(nullptr, 0, "mesh 2: no instance");
+  const std::vector<float> broken{1, NAN, 0};
+  refused(broken.data(), 3, "mesh 2: instance 1: density nan");
+  refused(broken.data() + 2, 1, "mesh 2: instance 0: density 0");
+  EXPECT_EQ(libatlas_add_instances(context(), atlas.get(), &mesh, nullptr,
+                                   std::numeric_limits<std::size_t>::max(), nullptr),
+            LIBATLAS_UNSUPPORTED);
+  EXPECT_EQ(libatlas_add_instances(context(), nullptr, &mesh, nullptr, 1, nullptr),
+            LIBATLAS_BAD_INPUT);
+}
+
 // As a program does that was compiled before meshes had polygons.
 TEST_F(C, MeshesOfEarlierHeadersAreTaken) {
   libatlas_mesh mesh = mesh_of(shapes_[1]);
