@@ -3,7 +3,7 @@ import { compile } from "./lib/compile.js";
 import { Library } from "./lib/library.js";
 import { WorkerLibrary } from "./lib/worker-library.js";
 
-export * from "./lib/errors.js";
+export { BadInputError, BadOptionError, CancelledError, InternalError, LibatlasError, NoSolutionError, OutOfMemoryError, UnsupportedError } from "./lib/errors.js";
 export { gather } from "./lib/gather.js";
 
 const address = () => new URL("./libatlas.wasm", import.meta.url);

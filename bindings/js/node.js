@@ -6,7 +6,7 @@ import { compile } from "./lib/compile.js";
 import { Library } from "./lib/library.js";
 import { WorkerLibrary } from "./lib/worker-library.js";
 
-export * from "./lib/errors.js";
+export { BadInputError, BadOptionError, CancelledError, InternalError, LibatlasError, NoSolutionError, OutOfMemoryError, UnsupportedError } from "./lib/errors.js";
 export { gather } from "./lib/gather.js";
 
 const besides = (name) => new URL(name, import.meta.url);
@@ -17,7 +17,7 @@ export async function load({ wasm } = {}) {
 }
 
 export async function startWorker({ wasm, worker } = {}) {
-  const start = worker ?? (() => new Worker(besides("./worker-node.js")));
+  const start = worker ?? (() => new Worker(besides("./worker-node.js"), { execArgv: [] }));  // some options fail there
   return new WorkerLibrary(() => portOf(start()), await compiled(wasm));
 }
 

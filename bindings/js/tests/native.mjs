@@ -1,11 +1,8 @@
-// Compares WebAssembly with the native library on models: node native.mjs NATIVE_PROGRAM LIBATLAS_WASM MODEL.obj ...
+// Calls the native library, by tests/native.c, and compares results.
 import { execFileSync } from "node:child_process";
 import { mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";
 import { tmpdir } from "node:os";
-import { basename, join } from "node:path";
-
-import { Library } from "../lib/library.js";
-import { fans, readObj } from "../lib/obj.js";
+import { join } from "node:path";
 
 export function native(program, mesh) {
   const folder = mkdtempSync(join(tmpdir(), "libatlas-"));
@@ -35,26 +32,8 @@ export function native(program, mesh) {
 // Whether both have the same charts, and by how much their uvs differ at most.
 export function compared(native, { meshes: [mesh] }) {
   const same = ["vertices", "indices", "triangleChart"].every(
-    (name) => Buffer.compare(Buffer.from(native[name]), Buffer.from(mesh[name])) === 0 &&
-      native[name].every((x, i) => x === mesh[name][i]));
+    (name) => native[name].length === mesh[name].length && native[name].every((x, i) => x === mesh[name][i]));
   let apart = same ? 0 : NaN;
   if (same) mesh.uvs.forEach((x, i) => (apart = Math.max(apart, Math.abs(x - native.uvs[i]))));
   return { same, apart };
-}
-
-if (import.meta.url === `file://${process.argv[1]}`) {
-  const [, , program, wasm, ...models] = process.argv;
-  const library = new Library(await WebAssembly.compile(readFileSync(wasm)));
-  for (const model of models) {
-    const mesh = fans(readObj(readFileSync(model, "utf8")));
-    const own = native(program, mesh);
-    library.unwrap(mesh);
-    const begun = process.cpuUsage();
-    const result = library.unwrap(mesh);
-    const { user, system } = process.cpuUsage(begun);
-    const seconds = (user + system) / 1e6;
-    const { same, apart } = compared(own, result);
-    console.log([basename(model, ".obj"), mesh.indices.length / 3, own.chartCount, result.chartCount, same ? "same" : "OTHER",
-      apart, own.seconds.toFixed(3), seconds.toFixed(3), (seconds / own.seconds).toFixed(2)].join("\t"));
-  }
 }

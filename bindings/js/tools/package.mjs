@@ -1,5 +1,5 @@
 // Lays out the npm package: node package.mjs FOLDER LIBATLAS_WASM
-import { copyFileSync, cpSync, mkdirSync, rmSync, writeFileSync } from "node:fs";
+import { copyFileSync, cpSync, mkdirSync, readFileSync, rmSync, writeFileSync } from "node:fs";
 import { join as path } from "node:path";
 import { fileURLToPath } from "node:url";
 
@@ -16,6 +16,9 @@ for (const name of ["package.json", "README.md", "index.js", "node.js", "worker.
 cpSync(path(sources, "lib"), path(folder, "lib"), { recursive: true });
 copyFileSync(path(sources, "../../LICENSE"), path(folder, "LICENSE"));
 copyFileSync(wasm, path(folder, "libatlas.wasm"));
+for (const name of ["index", "gltf-transform"]) {
+  writeFileSync(path(folder, `${name}.d.cts`), readFileSync(path(sources, `${name}.d.ts`), "utf8").replace("./index.js", "./index.cjs"));
+}
 for (const name of ["node", "gltf-transform"]) {
   writeFileSync(path(folder, `${name}.cjs`), commonJs(path(sources, `${name}.js`)));
 }
