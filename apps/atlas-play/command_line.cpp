@@ -198,6 +198,7 @@ void add_run_options(CLI::App& app, CommandLine& l) {
   app.add_option("--record", l.play.record, "write every frame to this folder");
   app.add_option("--screenshot", l.play.screenshot,
                  "write the last frame to this PNG file (in a window: F12 does)");
+  add_trust_options(app, l.read);
   app.add_flag("--plan", l.plan, "print what is compiled and allocated, and why, and end");
   add_off_flag(app, "--no-vsync", l.vsync, "do not wait for the display");
   app.add_flag("--debug", l.debug, "a debug context: every OpenGL error is reported");
