@@ -15,8 +15,7 @@ import sys
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 MODULES = ["core", "param", "charts", "raster", "pack", "uvs", "unwrap", "c"]
 C_HEADER = "libatlas/c/atlas.h"
-# Not in this release: threads of oneTBB, and what needs a package that others do not.
-LEFT_OUT = {"core/run_chunks_tbb.cpp"}
+THREADS = "run_chunks_own.cpp background.cpp granted_threads.cpp"  # of core/CMakeLists.txt
 INCLUDE = re.compile(r'^[ \t]*#[ \t]*include[ \t]+"(libatlas/[^"]+)"[^\n]*\n', re.M)
 
 NOTICE = """// libatlas, the component uv: charts, uvs and atlas packing of triangle meshes.
@@ -62,9 +61,8 @@ def sources():
     for module in MODULES:
         text = (ROOT / "libatlas" / module / "CMakeLists.txt").read_text()
         listed = re.search(r"SOURCES\s+(.*?)(?:DEPENDS|PRIVATE_LIBS|\))", text, re.S)[1]
-        for name in listed.replace("${threads}", "own").split():
-            if f"{module}/{name}" not in LEFT_OUT:
-                yield f"libatlas/{module}/{name}"
+        for name in listed.replace("${threads}", THREADS).split():
+            yield f"libatlas/{module}/{name}"
 
 
 def unnamed_bodies(text):

@@ -12,7 +12,7 @@
 #include "apps/common/program.h"
 #include "apps/common/quantity.h"
 #include "libatlas/core/counted.h"
-#include "libatlas/core/file_extension.h"
+#include "libatlas/files/file_extension.h"
 #include "libatlas/image/webp.h"
 
 namespace atlas::app {
@@ -301,6 +301,13 @@ bool is_page(const std::filesystem::path& report) {
   return lower_extension(report) == ".html";
 }
 
+constexpr std::pair<const char*, const char*> kExamples[] = {
+    {"A page that any browser opens, and a report to read",
+     "scene.ply -o world.html --report report.html"},
+    {"Uvs without light, on a square page", "part.obj -o part_uv.obj --charts-only --square"},
+    {"A lightmap of 1 cm a texel for a scene that stays as it is",
+     "room.glb -o room_lit.glb --keep-scene --texel 1cm"}};
+
 std::optional<ExportCommand> parse_export_command(int argc, char** argv, int& exit_code) {
   CLI::App app(
       "Turns a scene whose vertices carry illumination into a walkable world with texture atlases.",
@@ -312,6 +319,7 @@ std::optional<ExportCommand> parse_export_command(int argc, char** argv, int& ex
   add_texture_options(app, command.options, raw);
   add_page_options(app, command.options);
   add_run_options(app, command);
+  add_examples(app, kExamples);
   exit_code = parse(app, argc, argv);
   if (exit_code >= 0) return std::nullopt;
   exit_code = 2;

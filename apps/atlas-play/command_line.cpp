@@ -332,6 +332,12 @@ Parsed parse_command_line(int argc, char** argv) {
   add_light_options(app, l, light);
   add_run_options(app, l);
   add_bench_options(app, l);
+  constexpr std::pair<const char*, const char*> examples[] = {
+      {"Walk through an exported world", "world.wrl"},
+      {"A model under the sun of a day in June, in Lisbon", "model.glb --light sun:172,38.7,9"},
+      {"A picture without a window or a graphics card",
+       "world.wrl --headless --software --screenshot picture.png"}};
+  add_examples(app, examples);
   if (const int code = parse(app, argc, argv); code >= 0) {
     parsed.exit_code = code;
     return parsed;

@@ -10,7 +10,7 @@
 #include "apps/common/files.h"
 #include "apps/common/program.h"
 #include "apps/common/terminal.h"
-#include "libatlas/core/file_extension.h"
+#include "libatlas/files/file_extension.h"
 
 namespace atlas::app {
 namespace {

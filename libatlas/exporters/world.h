@@ -8,11 +8,11 @@
 #include <string>
 #include <vector>
 
-#include "libatlas/core/atomic_file.h"
 #include "libatlas/core/context.h"
-#include "libatlas/core/safe_file_name.h"
 #include "libatlas/core/status.h"
 #include "libatlas/core/vec.h"
+#include "libatlas/files/atomic_file.h"
+#include "libatlas/files/safe_file_name.h"
 
 namespace atlas {
 

@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "libatlas/core/clock.h"
-#include "libatlas/core/file_extension.h"
 #include "libatlas/exporters/world.h"
+#include "libatlas/files/file_extension.h"
 #include "libatlas/scene/named_materials.h"
 #include "libatlas/scene/reader.h"
 #include "libatlas/view/bench.h"

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "libatlas/core/atomic_file.h"
+#include "libatlas/files/atomic_file.h"
 #include "tests/apps/atlas_export/run_export.h"
 #include "tests/support/failing_calls.h"
 #include "tests/support/temp_folder.h"

@@ -1,4 +1,4 @@
-#include "libatlas/core/safe_file_name.h"
+#include "libatlas/files/safe_file_name.h"
 
 #include <fmt/format.h>
 

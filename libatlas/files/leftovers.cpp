@@ -1,4 +1,4 @@
-#include "libatlas/core/leftovers.h"
+#include "libatlas/files/leftovers.h"
 
 #include <fmt/format.h>
 #include <unistd.h>

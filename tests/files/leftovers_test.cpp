@@ -1,5 +1,5 @@
 // Which files are taken for the temporary files of processes that have ended.
-#include "libatlas/core/leftovers.h"
+#include "libatlas/files/leftovers.h"
 
 #include <gtest/gtest.h>
 #include <sys/stat.h>
@@ -9,7 +9,7 @@
 #include <filesystem>
 #include <string>
 
-#include "libatlas/core/atomic_file.h"
+#include "libatlas/files/atomic_file.h"
 #include "tests/core/no_root.h"
 #include "tests/support/temp_folder.h"
 

@@ -1,4 +1,4 @@
-#include "libatlas/core/atomic_file.h"
+#include "libatlas/files/atomic_file.h"
 
 #include <gtest/gtest.h>
 #include <signal.h>
@@ -12,8 +12,8 @@
 #include <thread>
 #include <utility>
 
-#include "libatlas/core/leftovers.h"
 #include "libatlas/core/links.h"
+#include "libatlas/files/leftovers.h"
 #include "tests/core/no_root.h"
 #include "tests/support/full_disk.h"
 #include "tests/support/temp_folder.h"

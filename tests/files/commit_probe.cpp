@@ -3,7 +3,7 @@
 #include <cstdio>
 #include <filesystem>
 
-#include "libatlas/core/atomic_file.h"
+#include "libatlas/files/atomic_file.h"
 
 int main(int count, char** argument) {
   const std::filesystem::path folder = argument[1];

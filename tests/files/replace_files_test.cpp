@@ -1,5 +1,5 @@
 // Several files are replaced together, whatever fails on the way.
-#include "libatlas/core/replace_files.h"
+#include "libatlas/files/replace_files.h"
 
 #include <gtest/gtest.h>
 #include <sys/stat.h>
@@ -11,7 +11,7 @@
 #include <thread>
 #include <vector>
 
-#include "libatlas/core/atomic_file.h"
+#include "libatlas/files/atomic_file.h"
 #include "tests/core/no_root.h"
 #include "tests/support/failing_calls.h"
 #include "tests/support/temp_folder.h"

@@ -1,4 +1,4 @@
-#include "libatlas/core/atomic_file.h"
+#include "libatlas/files/atomic_file.h"
 
 #include <fmt/format.h>
 #include <unistd.h>
@@ -9,10 +9,10 @@
 #include <cstdio>
 #include <cstring>
 
-#include "libatlas/core/leftovers.h"
 #include "libatlas/core/links.h"
-#include "libatlas/core/replace_files.h"
-#include "libatlas/core/write_error.h"
+#include "libatlas/files/leftovers.h"
+#include "libatlas/files/replace_files.h"
+#include "libatlas/files/write_error.h"
 
 namespace atlas {
 namespace fs = std::filesystem;

@@ -1,4 +1,4 @@
-#include "libatlas/core/replace_files.h"
+#include "libatlas/files/replace_files.h"
 
 #include <fcntl.h>
 #include <fmt/format.h>
@@ -16,7 +16,7 @@
 #include <thread>
 #include <vector>
 
-#include "libatlas/core/write_error.h"
+#include "libatlas/files/write_error.h"
 
 namespace atlas {
 namespace {

@@ -7,8 +7,8 @@
 #include <string>
 #include <utility>
 
-#include "libatlas/core/atomic_file.h"
-#include "libatlas/core/leftovers.h"
+#include "libatlas/files/atomic_file.h"
+#include "libatlas/files/leftovers.h"
 #include "tests/core/no_root.h"
 #include "tests/support/temp_folder.h"
 

@@ -1,5 +1,5 @@
 // Names of files that every viewer can load.
-#include "libatlas/core/safe_file_name.h"
+#include "libatlas/files/safe_file_name.h"
 
 #include <gtest/gtest.h>
 
