@@ -109,7 +109,7 @@ def test_a_thousand_wrong_calls_raise():
 @pytest.mark.parametrize(
     ("call", "error", "message"),
     [
-        (lambda: libatlas.unwrap([], []), libatlas.InputError, r"vertices: shape is \(0,\), but \(N, 3\)"),
+        (lambda: libatlas.unwrap([], []), libatlas.InputError, r"shape is \(0,\), but \(N, "),
         (lambda: libatlas.unwrap(VERTICES, FACES[:0]), libatlas.InputError, "no triangle"),
         (lambda: libatlas.unwrap(VERTICES[:0], FACES), libatlas.InputError, "triangle 0"),
         (lambda: libatlas.unwrap(VERTICES, FACES + 1), libatlas.InputError, "names none of the"),

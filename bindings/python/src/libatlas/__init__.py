@@ -12,7 +12,9 @@ from libatlas._library import Progress, version
 from libatlas._options import IslandOptions, PackOptions, Preset, UnwrapOptions, lightmap_options
 from libatlas._packing import PackedIslands, PackedRects, pack_islands, pack_rects
 from libatlas._plotting import plot
-from libatlas._unwrapping import Atlas, Charts, Distortion, UnwrappedAtlas, UnwrappedMesh, unwrap
+from libatlas._results import Charts, Distortion, UnwrappedAtlas, UnwrappedMesh
+from libatlas._transferring import transfer
+from libatlas._unwrapping import Atlas, unwrap
 from libatlas.errors import (
     CancelledError,
     Error,
@@ -52,6 +54,7 @@ __all__ = [
     "pack_islands",
     "pack_rects",
     "plot",
+    "transfer",
     "unwrap",
     "version",
 ]

@@ -71,10 +71,11 @@ def floats(value: Any, shape: tuple[int | None, ...], name: str, *, flat: bool =
     return np.ascontiguousarray(array)
 
 
-def indices(value: Any, shape: tuple[int | None, ...], name: str, wide: bool = False) -> npt.NDArray[Any]:
-    """Indices without gaps, of 32 bits, or of 16 if they are so already and not `wide`."""
+def indices(value: Any, shape: tuple[int | None, ...] | None, name: str, wide: bool = False) -> npt.NDArray[Any]:
+    """Indices without gaps, of 32 bits, or of 16 if they are so already and not `wide`; any shape if it is None."""
     array = _as_array(value, name, "iu", "integers")
-    _check_shape(array, shape, name)
+    if shape is not None:
+        _check_shape(array, shape, name)
     if array.dtype != np.uint32 and (wide or array.dtype != np.uint16):
         if array.size and (array.min() < 0 or array.max() > 0xFFFFFFFF):
             at = np.unravel_index(np.argmax((array < 0) | (array > 0xFFFFFFFF)), array.shape)
@@ -85,9 +86,50 @@ def indices(value: Any, shape: tuple[int | None, ...], name: str, wide: bool = F
     return np.ascontiguousarray(array)
 
 
-def flags(value: Any, shape: tuple[int | None, ...], name: str) -> npt.NDArray[np.uint8]:
+class Faces:
+    """Triangles or polygons: `corners` are the indices without gaps, one face after the other."""
+
+    def __init__(self, value: Any, polygon_sizes: Any, wide: bool) -> None:
+        self.sizes: npt.NDArray[np.uint32] | None = None  # of polygons
+        if polygon_sizes is not None:
+            self.corners = indices(value, (None,), "faces", wide)
+            self.sizes = indices(polygon_sizes, (None,), "polygon_sizes", wide=True)
+        elif _is_ragged(value):
+            self.sizes = np.array([len(face) for face in value], np.uint32)
+            self.corners = indices(flat(value), (None,), "faces", wide)
+        else:
+            self.corners = indices(value, (None, None), "faces", wide)
+            count, size = self.corners.shape
+            if size != 3:
+                self.sizes = np.full(count, size, np.uint32)
+        self.shape: tuple[int, ...] = self.corners.shape
+        self.count = self.corners.size // 3 if self.sizes is None else len(self.sizes)
+
+    def of_corners(self, array: npt.NDArray[Any], name: str) -> npt.NDArray[Any]:
+        """An array of one element a corner, in the shape of the faces or flat."""
+        if array.shape not in (self.shape, (self.corners.size,)):
+            raise InputError(f"{name}: shape is {array.shape}, but {self.shape} is needed")
+        return np.ascontiguousarray(array)
+
+
+def _is_ragged(value: Any) -> bool:
+    """Whether these are polygons of different sizes, as lists."""
+    if not isinstance(value, (list, tuple)) or not value:
+        return False
+    try:
+        return len({len(face) for face in value}) > 1
+    except TypeError:
+        return False
+
+
+def flat(value: Any) -> Any:
+    """Lists of different lengths become one; all else stays."""
+    return [corner for face in value for corner in face] if _is_ragged(value) else value
+
+
+def flags(value: Any, name: str) -> npt.NDArray[np.uint8]:
+    """0 or 1 for each element, of any shape."""
     array = _as_array(value, name, "biu", "booleans or integers")
-    _check_shape(array, shape, name)
     return np.ascontiguousarray(array != 0).view(np.uint8)
 
 

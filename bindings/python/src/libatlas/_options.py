@@ -125,6 +125,7 @@ _INIT = {
     "UnwrapOptions": "unwrap_options",
     "PackOptions": "pack_options",
     "IslandOptions": "island_options",
+    "TransferOptions": "transfer_options",
 }
 
 

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from libatlas._unwrapping import UnwrappedAtlas, UnwrappedMesh
+from libatlas._results import UnwrappedAtlas, UnwrappedMesh
 from libatlas.errors import InputError
 
 

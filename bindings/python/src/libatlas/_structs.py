@@ -31,6 +31,8 @@ class Mesh(ctypes.Structure):
         ("seams", c_void_p),
         ("triangle_density", c_void_p),
         ("density", c_float),
+        ("polygon_sizes", c_void_p),
+        ("polygon_count", c_size_t),
     ]
 
 
@@ -94,6 +96,18 @@ class MeshUvs(ctypes.Structure):
     ]
 
 
+class PolygonUvs(ctypes.Structure):
+    _fields_ = [
+        ("size", c_size_t),
+        ("polygon_count", c_size_t),
+        ("corner_count", c_size_t),
+        ("corners", c_void_p),
+        ("triangle_polygon", c_void_p),
+        ("cut_count", c_size_t),
+        ("cut_polygons", c_void_p),
+    ]
+
+
 class Charts(ctypes.Structure):
     _fields_ = [
         ("size", c_size_t),
@@ -108,6 +122,10 @@ class Charts(ctypes.Structure):
         ("stretch_999", c_void_p),
         ("stretch_max", c_void_p),
     ]
+
+
+class TransferOptions(ctypes.Structure):
+    _fields_ = [("size", c_size_t), ("page", c_uint32), ("shifts", c_int32)]
 
 
 class PackOptions(ctypes.Structure):
@@ -199,7 +217,9 @@ STRUCTS: dict[str, type[ctypes.Structure]] = {
     "libatlas_unwrap_options": UnwrapOptions,
     "libatlas_atlas_info": AtlasInfo,
     "libatlas_mesh_uvs": MeshUvs,
+    "libatlas_polygon_uvs": PolygonUvs,
     "libatlas_charts": Charts,
+    "libatlas_transfer_options": TransferOptions,
     "libatlas_pack_options": PackOptions,
     "libatlas_placement": Placement,
     "libatlas_packed_info": PackedInfo,

@@ -1,5 +1,5 @@
 // Compares the iterative solution with dense normal equations that are solved directly.
-#include "libatlas/bake/least_squares.h"
+#include "libatlas/raster/least_squares.h"
 
 #include <gtest/gtest.h>
 

@@ -1,10 +1,10 @@
-#include "libatlas/bake/least_squares.h"
+#include "libatlas/raster/least_squares.h"
 
 #include <algorithm>
 #include <cstring>
 #include <span>
 
-#include "libatlas/texture/wide_lanes.h"
+#include "libatlas/core/wide_lanes.h"
 
 namespace atlas {
 namespace {

@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "libatlas/bake/texel_grid.h"
+#include "libatlas/raster/texel_grid.h"
 
 namespace atlas {
 

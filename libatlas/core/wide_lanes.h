@@ -4,7 +4,7 @@
 #pragma once
 
 #include "libatlas/core/wide_vectors.h"
-#include "libatlas/texture/lanes.h"
+#include "libatlas/core/lanes.h"
 
 // The warning is about how functions pass such vectors, which does not matter for inlined
 // functions.

@@ -2,7 +2,7 @@
 
 #include <random>
 
-#include "libatlas/bake/texel_grid.h"
+#include "libatlas/raster/texel_grid.h"
 
 namespace atlas {
 namespace {

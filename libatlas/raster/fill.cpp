@@ -1,7 +1,7 @@
 #include <algorithm>
 #include <cstring>
 
-#include "libatlas/bake/texel_grid.h"
+#include "libatlas/raster/texel_grid.h"
 
 namespace atlas {
 namespace {

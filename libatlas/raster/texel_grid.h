@@ -1,4 +1,4 @@
-// Internal: the RGB texels of one chart's box while it is baked.
+// Internal: RGB texels, of which some are not known yet: those of a chart's box while it is baked.
 #pragma once
 
 #include <cstddef>
@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "libatlas/core/image.h"
-#include "libatlas/texture/lanes.h"
+#include "libatlas/core/lanes.h"
 
 namespace atlas {
 
