@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <system_error>
@@ -12,7 +13,7 @@
 #include "apps/common/program.h"
 #include "apps/common/quantity.h"
 #include "libatlas/core/counted.h"
-#include "libatlas/core/file_extension.h"
+#include "libatlas/files/file_extension.h"
 #include "libatlas/image/webp.h"
 
 namespace atlas::app {
@@ -21,6 +22,7 @@ namespace {
 // Options that are read as text and become quantities once all options are known.
 struct RawText {
   std::string unit = "m", texel, memory, tone = "linear";
+  std::optional<double> lightmap;  // texels per metre
 };
 
 void add_scene_options(CLI::App& app, ExportCommand& command, RawText& raw) {
@@ -100,6 +102,21 @@ void add_chart_options(CLI::App& app, ExportCommand& command) {
          "those of an earlier run; default: the first free set")
       ->needs(scene)
       ->check(within(1, 7));
+  CLI::Option* instances =
+      app.add_option(
+             "--instances", options.mesh_uvs,
+             "With --keep-scene, of a mesh that is shown several times: uvs that any viewer "
+             "reads for each place (default), or extras: the mesh once, with scale and "
+             "offset of each place in extras of its node (.gltf, .glb)")
+          ->transform(choices<MeshUvs>({{"uvs", MeshUvs::places}, {"extras", MeshUvs::instances}}))
+          ->type_name("NAME")
+          ->default_str("uvs")
+          ->needs(scene);
+  app.add_flag_callback(
+         "--each", [&options] { options.mesh_uvs = MeshUvs::meshes; },
+         "With --keep-scene: uvs for each mesh on a square of its own, once (.gltf, .glb)")
+      ->needs(scene)
+      ->excludes(instances);
   app.add_flag("--square", options.square_plain_page,
                "Uvs without light on a square page; else its shape is what packs best, and is "
                "printed");
@@ -125,10 +142,17 @@ void add_texture_options(CLI::App& app, ExportOptions& options, RawText& raw) {
                  "from --atlas-size")
       ->excludes("--atlases");
   app.add_option(
+         "--lightmap-options", raw.lightmap,
+         "Uvs without light for lightmaps of game engines, with so many texels a metre, 0: as "
+         "many as the page holds: a square page, two mip levels, blocks of 4 x 4 texels, "
+         "parts of a chart kept apart")
+      ->check(not_negative());
+  app.add_option(
       "--texel", raw.texel,
       "Length of a texel on the real surface, e.g. 5mm, without a unit metres; default: "
       "what the pages can hold, within 1 to 10 mm, and finer for fine scans; uvs without "
-      "light get a page as large as it needs");
+      "light get a page as large as it needs")
+      ->excludes("--lightmap-options");
   add_off_flag(app, "--ignore-texture-density", options.follow_textures,
                "Do not refine where the diffuse texture is finer than --texel");
   app.add_option("--threshold", options.threshold,
@@ -301,6 +325,13 @@ bool is_page(const std::filesystem::path& report) {
   return lower_extension(report) == ".html";
 }
 
+constexpr std::pair<const char*, const char*> kExamples[] = {
+    {"A page that any browser opens, and a report to read",
+     "scene.ply -o world.html --report report.html"},
+    {"Uvs without light, on a square page", "part.obj -o part_uv.obj --charts-only --square"},
+    {"A lightmap of 1 cm a texel for a scene that stays as it is",
+     "room.glb -o room_lit.glb --keep-scene --texel 1cm"}};
+
 std::optional<ExportCommand> parse_export_command(int argc, char** argv, int& exit_code) {
   CLI::App app(
       "Turns a scene whose vertices carry illumination into a walkable world with texture atlases.",
@@ -312,6 +343,7 @@ std::optional<ExportCommand> parse_export_command(int argc, char** argv, int& ex
   add_texture_options(app, command.options, raw);
   add_page_options(app, command.options);
   add_run_options(app, command);
+  add_examples(app, kExamples);
   exit_code = parse(app, argc, argv);
   if (exit_code >= 0) return std::nullopt;
   exit_code = 2;
@@ -339,6 +371,7 @@ std::optional<ExportCommand> parse_export_command(int argc, char** argv, int& ex
   command.read.srgb_colours = command.options.quantity == Quantity::colour && !as_written;
   command.options.colours_are_light = app.count("--quantity") > 0;
   command.options.larger_plain_page = app.count("--atlas-size") == 0;
+  if (raw.lightmap) use_lightmap_options(*raw.lightmap, command.options);
   // Pages of HTML are to be small.
   if (lower_extension(command.options.target) == ".html" && app.count("--texture-format") == 0 &&
       command.options.atlas_size <= kLongestWebpSide) {

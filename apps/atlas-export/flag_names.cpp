@@ -7,7 +7,7 @@
 namespace atlas::app {
 namespace {
 
-constexpr std::array<FlagName, 37> kFlagNames{{
+constexpr std::array<FlagName, 38> kFlagNames{{
     {"ExportOptions::atlases", "--atlases"},
     {"ExportOptions::lightmap_pages", "--atlases"},
     {"ExportOptions::plain_pages", "--atlases"},
@@ -29,6 +29,7 @@ constexpr std::array<FlagName, 37> kFlagNames{{
     {"ExportOptions::uv_set", "--uv-set"},
     {"ExportOptions::udim", "--udim"},
     {"ExportOptions::polygons", "--polygons"},
+    {"ExportOptions::mesh_uvs", "--instances"},
     {"ExportOptions::linear", "--linear"},
     {"ExportOptions::exr", "--exr"},
     {"ExportOptions::quantity", "--quantity"},

@@ -164,7 +164,7 @@ def table(args, constants, store):
     values = {c["name"]: c for c in constants}
     head = f"""# Ablation
 
-What changes if one constant of `charts/`, `param/` or `pack/` is halved or doubled, or a rule is left out:
+What changes if one constant of `charts/`, `param/`, `pack/` or `unwrap/` is halved or doubled, or a rule is left out:
 means over {len({m for m, _ in plain})} generated meshes with {DRAWS} draws each, and their standard errors over meshes; what is
 beyond twice that is bold. Ratios are in per cent, and jag is times 10^3. More is worse, except for page use.
 Written by `scripts/ablation.sh`; [how](../charts-measured.md#ablation).

@@ -12,7 +12,7 @@ import pathlib
 import re
 import sys
 
-FOLDERS = ["param", "charts", "pack"]
+FOLDERS = ["param", "charts", "pack", "unwrap"]
 
 COMMENT_OR_STRING = re.compile(r'//[^\n]*|/\*.*?\*/|"(?:\\.|[^"\\\n])*"|\'(?:\\.|[^\'\\\n])\'', re.S)
 DECLARATION = re.compile(
@@ -140,9 +140,10 @@ def main():
             file = File(path, name, fixed)
             text = file.instrumented()
             rows += file.rows
-            if text is None and path.suffix == ".h":
-                continue  # the plain one is found in the source folder
             out = target / "libatlas" / name
+            if text is None and path.suffix == ".h":
+                out.unlink(missing_ok=True)  # the plain one is found in the source folder
+                continue
             out.parent.mkdir(parents=True, exist_ok=True)
             text = f'#include "benchmarks/ablation/tuned.h"\n#line 1 "{path}"\n' + (text or file.text)
             if not out.exists() or out.read_text() != text:

@@ -5,7 +5,7 @@
 // that were compiled with an earlier header keep working, and so do those compiled with a later one
 // as long as they do not use what is new. What is passed in gets its size and its defaults from the
 // function with its name and _init, as in libatlas_mesh_init(&mesh, sizeof mesh). What is handed
-// out only needs the size: uvs.size = sizeof uvs. The structs of int32_t alone stay
+// out only needs the size: uvs.size = sizeof uvs. Structs that lie in arrays have no size, and stay
 // as they are.
 //
 // Errors: calls that can fail return a status. They change nothing then, and write null or 0 to
@@ -137,10 +137,21 @@ LIBATLAS_API void libatlas_atlas_destroy(libatlas_atlas* atlas);
 
 // Adds a copy of a mesh. Meshes are numbered from 0 and never joined to each other, also where they
 // touch. `number` may be null. Status: BAD_INPUT with the mesh and the triangle or polygon;
-// BAD_OPTION for the size of the struct; UNSUPPORTED beyond 2^30 triangles or 2^32 positions in all,
-// or for an outline too intricate to be cut into triangles.
+// BAD_OPTION for the size of the struct; UNSUPPORTED beyond 2^30 triangles or 2^32 positions in
+// all, or for an outline too intricate to be cut into triangles.
 LIBATLAS_API libatlas_status libatlas_add_mesh(libatlas_context* context, libatlas_atlas* atlas,
                                                const libatlas_mesh* mesh, uint32_t* number);
+
+// Adds a copy of a mesh that is shown `count` times, at least once. It is unwrapped once, and each
+// instance gets a place for a copy of its uvs, larger by its relative linear density; null: all 1.
+// libatlas_get_instances() has the places. Every other mesh of the atlas then gets a rectangle of
+// its own, too. Status: that of libatlas_add_mesh(); BAD_INPUT with the instance for a density that
+// is not finite and > 0, and for no instance; UNSUPPORTED for 2^30 instances.
+LIBATLAS_API libatlas_status libatlas_add_instances(libatlas_context* context,
+                                                    libatlas_atlas* atlas,
+                                                    const libatlas_mesh* mesh,
+                                                    const float* densities, size_t count,
+                                                    uint32_t* number);
 
 // ---- Unwrapping ----
 
@@ -182,10 +193,10 @@ LIBATLAS_API libatlas_status libatlas_lightmap_options_init(libatlas_unwrap_opti
 typedef struct libatlas_unwrapped libatlas_unwrapped;
 
 // Unwraps all meshes of an atlas; `options` may be null. Nothing is left out: triangle t of a mesh
-// is triangle t of its result, with its corners in the same order; of polygons each has its size - 2
-// triangles, one polygon after the other. May be called again, with other
-// options. Status: BAD_INPUT without a mesh, BAD_OPTION, NO_SOLUTION (more charts than the pages
-// hold texels for), CANCELLED.
+// is triangle t of its result, with its corners in the same order; of polygons each has its size -
+// 2 triangles, one polygon after the other. May be called again, with other options. Status:
+// BAD_INPUT without a mesh, BAD_OPTION, NO_SOLUTION (more charts than the pages hold texels for),
+// CANCELLED.
 LIBATLAS_API libatlas_status libatlas_unwrap(libatlas_context* context, const libatlas_atlas* atlas,
                                              const libatlas_unwrap_options* options,
                                              libatlas_unwrapped** unwrapped);
@@ -228,13 +239,32 @@ LIBATLAS_API libatlas_status libatlas_get_mesh(libatlas_context* context,
                                                const libatlas_unwrapped* unwrapped, uint32_t mesh,
                                                libatlas_mesh_uvs* uvs);
 
+// Where an instance has the mesh's uvs: at uv * scale + offset of its page.
+typedef struct libatlas_instance {
+  uint32_t page;
+  float scale[2], offset[2];  // 0..1 over the page, origin bottom left
+} libatlas_instance;
+
+// The instances of a mesh that libatlas_add_instances() has added; none of other meshes. The uvs of
+// the mesh are 0..1 over a rectangle of its own, and its triangle_page is that of the first
+// instance.
+typedef struct libatlas_instances {
+  size_t size;
+  size_t instance_count;
+  const libatlas_instance* instances;
+} libatlas_instances;
+LIBATLAS_API libatlas_status libatlas_get_instances(libatlas_context* context,
+                                                    const libatlas_unwrapped* unwrapped,
+                                                    uint32_t mesh, libatlas_instances* instances);
+
 // Uvs of a mesh of polygons, one per corner. No seam runs inside a polygon, except in those listed
-// as cut: they do not lie flat in one piece within the bounds of the options, or given uvs cut them.
-// `corners` has one part of these only; they can be drawn as their triangles.
+// as cut: they do not lie flat in one piece within the bounds of the options, or given uvs cut
+// them. `corners` has one part of these only; they can be drawn as their triangles.
 typedef struct libatlas_polygon_uvs {
   size_t size;
   size_t polygon_count, corner_count;  // 0 of a mesh of triangles
-  const uint32_t* corners;  // 1 a corner, in the mesh's order: into the vertices of libatlas_mesh_uvs
+  const uint32_t*
+      corners;  // 1 a corner, in the mesh's order: into the vertices of libatlas_mesh_uvs
   const uint32_t* triangle_polygon;  // 1 a triangle of libatlas_mesh_uvs
   size_t cut_count;
   const uint32_t* cut_polygons;  // ascending
@@ -269,6 +299,29 @@ LIBATLAS_API libatlas_status libatlas_get_seams(libatlas_context* context,
                                                 const libatlas_atlas* atlas,
                                                 const libatlas_unwrapped* unwrapped, uint32_t mesh,
                                                 uint8_t* seams, size_t count);
+
+// ---- Values at vertices into textures ----
+
+typedef struct libatlas_transfer_options {
+  size_t size;
+  uint32_t page;   // of the atlas; default 0
+  int32_t shifts;  // samples a texel, 1..64; rounded up to a square; default 4
+} libatlas_transfer_options;
+LIBATLAS_API libatlas_status libatlas_transfer_options_init(libatlas_transfer_options* options,
+                                                            size_t size);
+
+// Writes values at vertices into the texels of a page, whose bilinear interpolation then comes as
+// near to them over each chart as it can, in the least squares sense. Texels beside charts are
+// filled from those of the charts. `values`: 3 floats, finite, for each vertex of
+// libatlas_mesh_uvs, one mesh after the other; `value_count` of these in all. `texels`: room for 3
+// floats a texel, rows from the bottom; `texel_count` is width times height of the page. `options`
+// may be null. Status: BAD_INPUT for the counts or a value that is not finite, BAD_OPTION,
+// CANCELLED.
+LIBATLAS_API libatlas_status libatlas_transfer(libatlas_context* context,
+                                               const libatlas_unwrapped* unwrapped,
+                                               const float* values, size_t value_count,
+                                               const libatlas_transfer_options* options,
+                                               float* texels, size_t texel_count);
 
 // ---- Packing rectangles ----
 

@@ -1,5 +1,7 @@
 #include <fmt/format.h>
 
+#include <vector>
+
 #include "libatlas/c/objects.h"
 #include "libatlas/c/structs.h"
 
@@ -46,6 +48,25 @@ libatlas_status libatlas_atlas_create(libatlas_context* context, libatlas_atlas*
 
 void libatlas_atlas_destroy(libatlas_atlas* atlas) {
   delete atlas;
+}
+
+libatlas_status libatlas_add_instances(libatlas_context* context, libatlas_atlas* atlas,
+                                       const libatlas_mesh* mesh, const float* densities,
+                                       size_t count, uint32_t* number) {
+  if (number) *number = 0;
+  return atlas::c::run_call(context, [&]() -> atlas::Status {
+    if (!atlas) return atlas::c::null("atlas");
+    libatlas_mesh own;
+    if (auto s = atlas::c::take_struct(mesh, "libatlas_mesh", own); !s.ok()) return s;
+    if (auto s = atlas::c::check_polygons(own); !s.ok()) return s;
+    std::vector<float> products;
+    for (std::size_t i = 0; densities && i < count; ++i)
+      products.push_back(densities[i] * own.density);
+    if (!densities && own.density != 1 && count > 0) products.assign(count, own.density);
+    const auto added = atlas->atlas.add_instances(atlas::c::strided_mesh(own), count, products);
+    if (added.ok() && number) *number = *added;
+    return added.status();
+  });
 }
 
 libatlas_status libatlas_add_mesh(libatlas_context* context, libatlas_atlas* atlas,

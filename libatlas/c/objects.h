@@ -36,6 +36,7 @@ struct libatlas_unwrapped {
 
   atlas::UnwrappedAtlas atlas;
   std::vector<libatlas_extent> pages = {};
+  std::vector<std::vector<libatlas_instance>> instances = {};  // one per mesh
   // Columns of libatlas_charts.
   std::vector<std::uint32_t> mesh = {}, page = {}, material = {}, triangle_count = {};
   std::vector<std::uint8_t> kept = {};

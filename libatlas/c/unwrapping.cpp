@@ -4,6 +4,11 @@
 libatlas_unwrapped::libatlas_unwrapped(atlas::UnwrappedAtlas unwrapped)
     : atlas(std::move(unwrapped)), pages(atlas::c::to_c(atlas.all().pages)) {
   const atlas::UnwrappedMesh& all = atlas.all();
+  for (std::size_t i = 0; i < atlas.mesh_count(); ++i) {
+    instances.emplace_back();
+    for (const atlas::MeshInstance& at : atlas.mesh(i).instances)
+      instances.back().push_back({at.page, {at.scale.x, at.scale.y}, {at.offset.x, at.offset.y}});
+  }
   page.resize(all.charts.charts.size());
   for (const atlas::ChartPlacement& placement : all.placements)
     page[placement.chart] = std::uint32_t(placement.page);
@@ -213,6 +218,18 @@ libatlas_status libatlas_get_polygons(libatlas_context* context,
     if (auto s = atlas::c::check_mesh(unwrapped, mesh); !s.ok()) return s;
     return atlas::c::hand_out(polygons, "libatlas_polygon_uvs",
                               atlas::c::describe_polygons(unwrapped->atlas.mesh(mesh)));
+  });
+}
+
+libatlas_status libatlas_get_instances(libatlas_context* context,
+                                       const libatlas_unwrapped* unwrapped, uint32_t mesh,
+                                       libatlas_instances* instances) {
+  return atlas::c::run_call(context, [&] {
+    if (auto s = atlas::c::check_mesh(unwrapped, mesh); !s.ok()) return s;
+    libatlas_instances own{};
+    own.instance_count = unwrapped->instances[mesh].size();
+    own.instances = unwrapped->instances[mesh].data();
+    return atlas::c::hand_out(instances, "libatlas_instances", own);
   });
 }
 

@@ -19,6 +19,21 @@ constexpr std::size_t kTrianglesAtATime = 50000;
 // How many segmentations ChartPreset::best tries, each from other cells.
 constexpr int kBestAttempts = 4;
 
+// Seams along the sides of polygons are longer than those along the edges of their triangles, by a
+// tenth on grids of squares (4 / pi instead of 1.16 times the way across, averaged over all
+// directions) and by a sixth on hexagons. Which cells seams follow makes as much of a difference,
+// so meshes of polygons up to this size are cut in several ways, too: ten meshes of quads then have
+// 1 % shorter seams than their triangles in one way, instead of 8 % longer ones.
+constexpr std::size_t kPolygonTriangles = 200000;
+
+int attempts_for(const FlattenInput& mesh) {
+  if (mesh.options.preset == ChartPreset::best) return kBestAttempts;
+  const bool polygons = !mesh.topology.polygon.empty() &&
+                        mesh.options.preset != ChartPreset::fast &&
+                        mesh.topology.triangle_count() <= kPolygonTriangles;
+  return polygons ? kBestAttempts : 1;
+}
+
 // The cost of a piece's charts; less is better.
 struct Cost {
   std::size_t charts = 0;
@@ -73,7 +88,7 @@ class BestCharts {
 
 // Cuts the whole mesh at once.
 CutCharts cut_mesh(const FlattenInput& mesh, const Context& context) {
-  const int attempts = mesh.options.preset == ChartPreset::best ? kBestAttempts : 1;
+  const int attempts = attempts_for(mesh);
   CutCharts out;
   FlattenResult chosen;
   BestCharts best(mesh.topology);

@@ -18,7 +18,8 @@ static_assert(__STDCPP_DEFAULT_NEW_ALIGNMENT__ >= ATLAS_PAIR_ALIGNMENT);
 // compilers split it into two, and may run out of registers. QuadInPlace is the type for reading it
 // from arrays.
 using Quad = double __attribute__((vector_size(32)));
-using QuadInPlace = double __attribute__((vector_size(32), aligned(ATLAS_PAIR_ALIGNMENT), may_alias));
+using QuadInPlace =
+    double __attribute__((vector_size(32), aligned(ATLAS_PAIR_ALIGNMENT), may_alias));
 
 // For functions that are called by functions with and without ATLAS_WIDE: they are compiled for
 // each.
@@ -26,8 +27,9 @@ using QuadInPlace = double __attribute__((vector_size(32), aligned(ATLAS_PAIR_AL
 
 // Clang gets no wide vectors: where QuadInPlace is a template argument or behind a reference, Clang
 // forgets that it need not be aligned to 32 bytes, and reads it with instructions that require it.
+// Neither does Windows, on whose stack GCC does not align them.
 // LIBATLAS_NARROW_VECTORS compiles what other processors execute (the preset tsan does).
-#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && \
+#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && !defined(_WIN32) && \
     !defined(LIBATLAS_NARROW_VECTORS)
 #define ATLAS_WIDE [[gnu::target("avx2")]]
 inline const bool has_wide_vectors = __builtin_cpu_supports("avx2");

@@ -145,6 +145,8 @@ Status check_world(const World& world) {
   }
   if (world.light && world.light->curves.empty())
     return wrong("its pages hold light, but no curve shows it");
+  if (world.instances && (!world.scene || !world.scene->source || world.lightmap))
+    return wrong("only a scene that was read from glTF has instances, and no lightmap then");
   if (world.lightmap && !world.scene) return wrong("it has a lightmap, but no scene to keep");
   return world.scene ? check_kept_scene(world) : Status();
 }

@@ -8,11 +8,12 @@
 #include <string>
 #include <vector>
 
-#include "libatlas/core/atomic_file.h"
 #include "libatlas/core/context.h"
-#include "libatlas/core/safe_file_name.h"
 #include "libatlas/core/status.h"
 #include "libatlas/core/vec.h"
+#include "libatlas/files/atomic_file.h"
+#include "libatlas/files/safe_file_name.h"
+#include "libatlas/unwrap/instance.h"
 
 namespace atlas {
 
@@ -101,6 +102,11 @@ struct World {
   // For `scene` in glTF: the new uvs become the set TEXCOORD_<uv_set>, 1..7, in place of what it
   // holds. 0: the first set that is free. OBJ has one set and ignores this.
   int uv_set = 0;
+  // For `scene` that was read from glTF, in glTF: each mesh is written once, however often it is
+  // shown, with the uvs of its first place, which are 0..1 over a square of its own. One for each
+  // place of a mesh, in the order in which the file's nodes show them: where that square lies on
+  // the pages, which extras of nodes and attributes of instances then say. Empty: nowhere.
+  std::optional<std::vector<MeshInstance>> instances = {};
   // For glTF: packs attributes and indices (EXT_meshopt_compression). In a world without `scene`,
   // positions become whole numbers of 16 bits (KHR_mesh_quantization) if that moves none by more
   // than this, in scene units, along an axis, and so do uvs of pages with images. Empty: plain.

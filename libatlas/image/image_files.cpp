@@ -18,7 +18,7 @@
 #include <utility>
 
 #include "libatlas/core/srgb.h"
-#include "libatlas/core/write_error.h"
+#include "libatlas/files/write_error.h"
 #include "libatlas/image/display_window.h"
 #include "libatlas/image/file_kind.h"
 #include "libatlas/image/image_claim.h"

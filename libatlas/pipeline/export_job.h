@@ -6,9 +6,9 @@
 #include <vector>
 
 #include "libatlas/charts/charts.h"
-#include "libatlas/core/atomic_file.h"
 #include "libatlas/core/context.h"
 #include "libatlas/core/vec.h"
+#include "libatlas/files/atomic_file.h"
 #include "libatlas/pipeline/export_options.h"
 #include "libatlas/pipeline/stage_recorder.h"
 #include "libatlas/report/export_plan.h"

@@ -6,10 +6,11 @@
 #include <bit>
 #include <cmath>
 
-#include "libatlas/core/file_extension.h"
 #include "libatlas/core/is_enumerator.h"
 #include "libatlas/exporters/world.h"
+#include "libatlas/files/file_extension.h"
 #include "libatlas/image/webp.h"
+#include "libatlas/unwrap/unwrap.h"
 #include "libatlas/uvs/placement.h"
 
 namespace atlas {
@@ -40,6 +41,17 @@ Status check_polygons(const ExportOptions& o) {
           "(name an .obj without ExportOptions::keep_scene, or leave ExportOptions::polygons out)"};
 }
 
+Status check_mesh_uvs(const ExportOptions& o) {
+  if (!is_enumerator(o.mesh_uvs, MeshUvs::meshes)) return out_of_range("mesh_uvs", "a MeshUvs");
+  if (o.mesh_uvs == MeshUvs::places || o.target.empty()) return {};
+  const std::string extension = lower_extension(o.target);
+  if (o.keep_scene && (extension == ".gltf" || extension == ".glb")) return {};
+  return {
+      ErrorCode::bad_option,
+      "ExportOptions::mesh_uvs: only a glTF file that keeps its scene shows a mesh several times "
+      "(add ExportOptions::keep_scene and write .gltf or .glb)"};
+}
+
 Status check_weight(const ExportOptions& o) {
   const bool webp = o.texture_format == TextureFormat::webp;
   if ((webp || o.compress) && !holds_compressed(o.target)) {
@@ -67,6 +79,16 @@ const char* page_extension(TextureFormat format) {
   return format == TextureFormat::webp ? ".webp" : ".png";
 }
 
+void use_lightmap_options(double texels_per_metre, ExportOptions& options) {
+  const UnwrapOptions lightmap = lightmap_options(texels_per_metre);
+  options.square_plain_page = lightmap.square;
+  options.plain_mip_levels = lightmap.mip_levels;
+  options.plain_padding = lightmap.padding;
+  options.plain_part_gaps = lightmap.part_gaps;
+  options.larger_plain_page = false;
+  options.texel_metres = texels_per_metre > 0 ? 1 / texels_per_metre : 0;
+}
+
 Status check_options(const ExportOptions& o) {
   if (Status s = check_world_extension(o.target); !s.ok()) return s;
   if (o.keep_scene && !holds_scene(o.target)) {
@@ -83,6 +105,7 @@ Status check_options(const ExportOptions& o) {
   if (o.lightmap_pages < 1) return out_of_range("lightmap_pages", "at least 1");
   if (Status s = check_udim(o); !s.ok()) return s;
   if (Status s = check_polygons(o); !s.ok()) return s;
+  if (Status s = check_mesh_uvs(o); !s.ok()) return s;
   if (o.uv_set < 0 || o.uv_set > 7) return out_of_range("uv_set", "within 1..7, or 0");
   if (o.uv_set > 0 && (!o.keep_scene || lower_extension(o.target) == ".obj")) {
     return {ErrorCode::bad_option,
@@ -102,6 +125,8 @@ Status check_options(const ExportOptions& o) {
   if (o.mip_levels < 0 || o.mip_levels > kMostMipLevels) return out_of_range("mip_levels", levels);
   if (o.plain_mip_levels < 0 || o.plain_mip_levels > kMostMipLevels)
     return out_of_range("plain_mip_levels", levels);
+  if (o.plain_padding < 0 || o.plain_padding > 64)
+    return out_of_range("plain_padding", "within 0..64");
   if (o.shifts < 1 || o.shifts > 64) return out_of_range("shifts", "within 1..64");
   const int room = o.atlas_size - 2 * gutter_pad(o.mip_levels);
   if (o.min_side < 1 || o.min_side > std::min(256, room)) {

@@ -34,6 +34,14 @@ enum class TextureFormat {
 // Returns ".png" or ".webp".
 const char* page_extension(TextureFormat format);
 
+// Which uvs a glTF scene that is kept gets where it shows a mesh several times.
+enum class MeshUvs {
+  places,     // each place has its own, as any viewer reads them: a mesh becomes one for each place
+  instances,  // each mesh once; each place has a scale and an offset, for engines
+              // (World::instances)
+  meshes,     // each mesh once, on a square of its own
+};
+
 struct ExportOptions {
   // The extension chooses the format: .wrl, .wrz, .obj, .gltf, .glb, .html. Images
   // are written beside it, except by the last two.
@@ -67,6 +75,12 @@ struct ExportOptions {
   // As mip_levels, for plain uvs; 0..kMostMipLevels. With 0, charts keep two texels between each
   // other, which bilinear lookups need.
   std::int32_t plain_mip_levels = 0;
+
+  // As UnwrapOptions::padding and part_gaps, for plain uvs: texels free around each chart, 0..64, 0
+  // for what plain_mip_levels need; whether parts of one chart are kept apart, which they are with
+  // keep_scene in any case.
+  std::int32_t plain_padding = 0;
+  bool plain_part_gaps = false;
 
   // The length of a texel on the real surface. 0: as fine as the budget could hold, within 1 to
   // 10 mm (paper, stage 2). Where vertices with different light lie closer than 4 mm on average, it
@@ -127,6 +141,9 @@ struct ExportOptions {
   // are paint, and the export is one with charts_only.
   bool colours_are_light = false;
   std::uint32_t lightmap_pages = 1;
+  // Others than places need a .gltf or .glb, a scene that was read from glTF with keep_scene, and,
+  // if it has light, charts_only. MeshUvs::instances may have several plain_pages.
+  MeshUvs mesh_uvs = MeshUvs::places;
   // With keep_scene, for glTF: the set of the new uvs, TEXCOORD_<uv_set>, 1..7. What it holds is
   // replaced, for instance the uvs of an earlier export. 0: the first set that is free.
   int uv_set = 0;
@@ -139,6 +156,10 @@ struct ExportOptions {
   bool report_pictures = false;  // make ExportReport::pictures
   bool measure_error = true;     // compare the finished pages with the input's light
 };
+
+// Sets the options of plain uvs to those of lightmap_options() (unwrap/unwrap.h), which give the
+// same uvs for one page of the same size. `texels_per_metre`: 0 for as many as the pages hold.
+void use_lightmap_options(double texels_per_metre, ExportOptions& options);
 
 // Checks every range documented above, and those of charts and tone. The message names the field
 // with its struct (ExportOptions::atlas_size), and its range.

@@ -17,6 +17,7 @@
 #include "libatlas/pipeline/chart_stages.h"
 #include "libatlas/pipeline/export_job.h"
 #include "libatlas/pipeline/finish_mesh.h"
+#include "libatlas/pipeline/mesh_uvs.h"
 #include "libatlas/pipeline/pack_stages.h"
 #include "libatlas/pipeline/page_stages.h"
 #include "libatlas/pipeline/plan.h"
@@ -48,6 +49,10 @@ Result<PackedCharts> make_and_pack(ExportJob& job, const SceneLight* light) {
 }
 
 Status run_stages(ExportJob& job) {
+  if (job.options.mesh_uvs != MeshUvs::places) {
+    const Result<MeshUvsOfScene> made = unwrap_meshes_once(job);
+    return made.ok() ? write_export(job, *made) : made.status();
+  }
   std::optional<SceneLight> light;
   if (job.plan.bake) {
     Result<SceneLight> exposed = expose(job);
@@ -85,9 +90,9 @@ void advise(ExportJob& job) {
     if (!job.options.keep_scene) add(advice_on_materials(job.scene, job.options.quantity));
   }
   if (report.cut_polygons > 0)
-    report.advice.push_back(fmt::format(
-        "{} of {} faces do not lie flat in one piece, and are written as triangles",
-        report.cut_polygons, job.scene.polygons.count()));
+    report.advice.push_back(
+        fmt::format("{} of {} faces do not lie flat in one piece, and are written as triangles",
+                    report.cut_polygons, job.scene.polygons.count()));
   if (report.thin_triangles > 0)
     report.advice.push_back(thin_triangles_text(report.thin_triangles, report.triangles_out));
   for (const std::string& line : report.advice) job.context.say(line);

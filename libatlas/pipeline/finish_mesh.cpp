@@ -4,6 +4,7 @@
 
 #include <utility>
 
+#include "libatlas/pipeline/layout_options.h"
 #include "libatlas/uvs/finish_uvs.h"
 #include "libatlas/uvs/written_stretch.h"
 
@@ -19,8 +20,9 @@ Result<FinishedMesh> finish_mesh(ExportJob& job, const PackedCharts& packed,
   const PlacedCharts placed{packed.charts, packed.layout.placements, packed.layout.pages};
   const bool baked = job.plan.bake;
   const std::int32_t mip_levels = report.mip_levels;
-  FinishedUvs finished = finish_uvs(placed, result.mesh.uv_indices,
-                                    {baked, mip_levels, gutter_pad(mip_levels)}, context);
+  const std::int32_t padding = baked ? gutter_pad(mip_levels) : plain_padding(job.options);
+  FinishedUvs finished =
+      finish_uvs(placed, result.mesh.uv_indices, {baked, mip_levels, padding}, context);
   MeshView shape;
   shape.positions = job.scene.positions;
   const WrittenStretch written =

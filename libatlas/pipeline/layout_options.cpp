@@ -48,7 +48,7 @@ LayoutOptions layout_options(const ChartSet& charts, const ExportOptions& option
   } else {
     layout.pages = options.plain_pages;
     layout.page_size = plain_page_size(charts, options);
-    layout.padding = gutter_pad(options.plain_mip_levels);
+    layout.padding = plain_padding(options);
     layout.alignment = 1 << options.plain_mip_levels;
     layout.minimum_side = 0;
     if (options.plain_mip_levels > 0)
@@ -57,6 +57,10 @@ LayoutOptions layout_options(const ChartSet& charts, const ExportOptions& option
     layout.free_aspect = !layout.square;
   }
   return layout;
+}
+
+std::int32_t plain_padding(const ExportOptions& options) {
+  return std::max(options.plain_padding, gutter_pad(options.plain_mip_levels));
 }
 
 std::string more_room(const ExportOptions& options, bool bake, const std::string& other) {

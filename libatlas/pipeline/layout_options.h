@@ -1,6 +1,7 @@
 // Internal: derives the layout options of pages from an export's options.
 #pragma once
 
+#include <cstdint>
 #include <string>
 
 #include "libatlas/charts/charts.h"
@@ -14,6 +15,9 @@ namespace atlas {
 // uvs; a single page then grows with the number of charts if that is requested
 // (ExportOptions::larger_plain_page).
 LayoutOptions layout_options(const ChartSet& charts, const ExportOptions& options, bool bake);
+
+// Returns the texels kept free around charts of plain uvs.
+std::int32_t plain_padding(const ExportOptions& options);
 
 // Returns what gives charts more room, for messages: more pages (unless the file can only have one,
 // see holds_pages()), or larger ones, or `other`, if not empty.

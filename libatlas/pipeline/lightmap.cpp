@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "libatlas/core/file_extension.h"
+#include "libatlas/files/file_extension.h"
 #include "libatlas/scene/gltf/gltf_kept_colours.h"
 
 namespace atlas {
@@ -41,7 +41,7 @@ std::string colours_text(const Scene& scene, const ExportOptions& options) {
 }
 
 bool holds_pages(const ExportOptions& options, bool bake) {
-  if (!options.keep_scene || options.udim) return true;
+  if (!options.keep_scene || options.udim || options.mesh_uvs == MeshUvs::instances) return true;
   return bake && lower_extension(options.target) != ".obj";
 }
 

@@ -55,8 +55,9 @@ Status check_density(const ExportJob& job, const PlainUvs& uvs, const PageLayout
 
 Result<PageLayout> fill_plain(ExportJob& job, const PlainUvs& uvs, const LayoutOptions& options,
                               ChartSet& charts, const Context& context) {
-  if (!job.options.keep_scene) return fill_pages(uvs, options, charts, context);
-  // With keep_scene, the uvs are for a lightmap.
+  if (!job.options.keep_scene && !job.options.plain_part_gaps)
+    return fill_pages(uvs, options, charts, context);
+  // These uvs are for a lightmap.
   Result<PagesOfParts> apart = fill_pages_apart(uvs, options, charts, context);
   if (!apart.ok()) return apart.status();
   job.report.opened_charts = apart->opened;

@@ -5,11 +5,11 @@
 #include <algorithm>
 #include <cmath>
 
-#include "libatlas/core/atomic_file.h"
 #include "libatlas/core/counted.h"
 #include "libatlas/core/degrees.h"
 #include "libatlas/core/glm_bridge.h"
 #include "libatlas/exporters/world.h"
+#include "libatlas/files/atomic_file.h"
 #include "libatlas/pipeline/lightmap.h"
 #include "libatlas/scene/triangle_area.h"
 #include "libatlas/texture/luminance.h"
@@ -293,6 +293,12 @@ Status check_plan(const ExportPlan& plan, const ExportOptions& options) {
     return {ErrorCode::bad_option,
             "ExportOptions::udim: this scene carries light, whose pages are images with materials "
             "of their own (add ExportOptions::charts_only, or leave ExportOptions::udim out)"};
+  }
+  if (options.mesh_uvs != MeshUvs::places && plan.bake) {
+    return {
+        ErrorCode::bad_option,
+        "ExportOptions::mesh_uvs: this scene carries light, and each place of a mesh has its own "
+        "(add ExportOptions::charts_only, or leave ExportOptions::mesh_uvs out)"};
   }
   if (options.polygons && plan.bake) {
     return {ErrorCode::bad_option,

@@ -250,17 +250,29 @@ std::string writing_note(const ExportJob& job, const WorldFile& written) {
   return fmt::format("relative to {} {} {}", left_out.x, left_out.y, left_out.z);
 }
 
-}  // namespace
+World world_of_meshes(const ExportJob& job, const MeshUvsOfScene& made) {
+  World world;
+  world.origin = job.scene.origin;
+  world.positions = job.scene.positions;
+  world.uvs = made.uvs;
+  world.instances = made.instances;
+  world.pages.resize(1);
+  world.pages[0].indices = job.scene.indices;
+  world.pages[0].uv_indices = made.uv_indices;
+  world.scene = &job.scene;
+  world.uv_set = job.options.uv_set;
+  world.up = job.options.up;
+  world.title = job.options.target.stem().string();
+  world.metres_per_unit = job.scene.metres_per_unit;
+  if (job.options.compress) world.compress_slip = 0;
+  return world;
+}
 
-Status write_export(ExportJob& job, ExportToWrite made) {
-  const Context& context = job.record.begin("writing");
+// `images`: where the pages' images lie, which are not kept if the world holds them itself.
+Status write_and_commit(ExportJob& job, const World& world,
+                        std::span<const std::filesystem::path> images, const Context& context) {
   const ExportOptions& options = job.options;
   ExportReport& report = job.report;
-  if (Status s = draw(job, made); !s.ok()) return s;
-  if (made.light && !options.keep_scene)
-    made.mesh.one_sided = one_sided_triangles(job.scene, made.packed.charts, made.mesh, context);
-  if (context.cancelled()) return Status::cancelled();
-  const World world = make_world(job, made, context);
   Result<WorldFile> written = write_world(world, options.target, job.files, context);
   if (!written.ok()) return written.status();
   report.not_kept = written->not_kept;
@@ -268,7 +280,7 @@ Status write_export(ExportJob& job, ExportToWrite made) {
     report.advice.push_back(on_meshes_without_uvs(written->meshes_without_uvs));
   if (written->far_origin) report.advice.push_back(on_far_origin(world));
   if (embeds_images(options.target) && !options.keep_scene) {
-    for (const auto& image : made.baked.image_sources) job.files.discard(image);
+    for (const auto& image : images) job.files.discard(image);
     for (PageReport& page : report.pages) page.image.clear();
   }
   if (context.cancelled()) return Status::cancelled();
@@ -276,6 +288,23 @@ Status write_export(ExportJob& job, ExportToWrite made) {
   if (Status s = commit_files(job, bytes); !s.ok()) return s;
   job.record.finish({report.triangles_out, bytes, "bytes", writing_note(job, *written)});
   return {};
+}
+
+}  // namespace
+
+Status write_export(ExportJob& job, ExportToWrite made) {
+  const Context& context = job.record.begin("writing");
+  if (Status s = draw(job, made); !s.ok()) return s;
+  if (made.light && !job.options.keep_scene)
+    made.mesh.one_sided = one_sided_triangles(job.scene, made.packed.charts, made.mesh, context);
+  if (context.cancelled()) return Status::cancelled();
+  const World world = make_world(job, made, context);
+  return write_and_commit(job, world, made.baked.image_sources, context);
+}
+
+Status write_export(ExportJob& job, const MeshUvsOfScene& made) {
+  const Context& context = job.record.begin("writing");
+  return write_and_commit(job, world_of_meshes(job, made), {}, context);
 }
 
 }  // namespace atlas

@@ -8,6 +8,7 @@
 #include "libatlas/core/vec.h"
 #include "libatlas/pipeline/bake_pages.h"
 #include "libatlas/pipeline/export_job.h"
+#include "libatlas/pipeline/mesh_uvs.h"
 
 namespace atlas {
 
@@ -25,5 +26,8 @@ struct ExportToWrite {
 // advice on a place too far from zero and on meshes without new uvs. Errors: bad_input, io,
 // cancelled.
 Status write_export(ExportJob& job, ExportToWrite made);
+
+// The same for a scene with uvs of its meshes.
+Status write_export(ExportJob& job, const MeshUvsOfScene& made);
 
 }  // namespace atlas

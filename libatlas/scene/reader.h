@@ -28,7 +28,7 @@ struct ReadOptions {
   bool unlit_textures = true;  // false: the same if the scene carries no illumination
   // Keeps PNG and JPEG textures encoded, in Texture::encoded, for programs that only pass them on.
   bool encoded_textures = false;
-  bool normals = false;  // true: reads the file's normals into Scene::normals
+  bool normals = false;   // true: reads the file's normals into Scene::normals
   bool polygons = false;  // true: keeps which triangles are one face, in Scene::polygons
   // Keeps what Scene has no arrays for, in Scene::source (glTF) and Material::mtl_lines (OBJ), and
   // reads Scene::vertex_opacity (alpha of PLY's and OFF's vertices and of glTF's COLOR_0). All

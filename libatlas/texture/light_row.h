@@ -3,7 +3,7 @@
 #pragma once
 
 #include "libatlas/core/vec.h"
-#include "libatlas/texture/lanes.h"
+#include "libatlas/core/lanes.h"
 #include "libatlas/texture/texture_levels.h"
 
 namespace atlas {

@@ -6,7 +6,7 @@
 
 #include "libatlas/core/image.h"
 #include "libatlas/scene/scene.h"
-#include "libatlas/texture/lanes.h"
+#include "libatlas/core/lanes.h"
 
 namespace atlas {
 

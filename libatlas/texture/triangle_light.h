@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "libatlas/raster/scan.h"
-#include "libatlas/texture/lanes.h"
+#include "libatlas/core/lanes.h"
 #include "libatlas/texture/light_row.h"
 #include "libatlas/texture/luminance.h"
 #include "libatlas/texture/texture_levels.h"

@@ -13,6 +13,8 @@
 #include "libatlas/core/half_edge.h"
 #include "libatlas/core/no_index.h"
 #include "libatlas/core/sort_total.h"
+#include "libatlas/unwrap/blocks.h"
+#include "libatlas/unwrap/join_unwrapped.h"
 #include "libatlas/unwrap/mesh_check.h"
 #include "libatlas/unwrap/mesh_polygons.h"
 
@@ -134,7 +136,8 @@ UnwrappedAtlas::Mesh UnwrappedAtlas::mesh(std::size_t i) const {
           part(all_.charts.triangle_chart, t, t_end),
           triangle_polygon_[i],
           polygon_uvs_[i].corners,
-          polygon_uvs_[i].cut};
+          polygon_uvs_[i].cut,
+          instances_.empty() ? std::span<const MeshInstance>() : instances_[i]};
 }
 
 std::size_t UnwrappedAtlas::mesh_of_chart(std::size_t chart) const {
@@ -163,6 +166,7 @@ Result<std::uint32_t> Atlas::add(const StridedMesh& mesh, float density) {
                               number));
   try {
     mesh_polygons_.emplace_back();
+    instances_.emplace_back();
     if (polygons > 0) {
       if (Status s = add_polygons(mesh, density); !s.ok()) {
         cut_to_meshes();
@@ -176,6 +180,21 @@ Result<std::uint32_t> Atlas::add(const StridedMesh& mesh, float density) {
     throw;
   }
   return std::uint32_t(number);
+}
+
+Result<std::uint32_t> Atlas::add_instances(const MeshView& mesh, std::size_t count,
+                                           std::span<const float> densities) {
+  return add_instances(strided(mesh), count, densities);
+}
+
+Result<std::uint32_t> Atlas::add_instances(const StridedMesh& mesh, std::size_t count,
+                                           std::span<const float> densities) {
+  if (Status s = check_instances(mesh_count(), count, densities); !s.ok()) return s;
+  std::vector<float> own(densities.begin(), densities.end());
+  own.resize(count, 1);
+  Result<std::uint32_t> added = add(mesh);
+  if (added.ok()) instances_.back() = std::move(own);
+  return added;
 }
 
 Status Atlas::add_polygons(const StridedMesh& mesh, float density) {
@@ -280,6 +299,7 @@ void Atlas::cut_to_meshes() {
   cut(density_, triangles);
   cut(polygons_, triangles);
   cut(mesh_polygons_, mesh_count());
+  cut(instances_, mesh_count());
 }
 
 Result<UnwrappedAtlas> Atlas::unwrap(const UnwrapOptions& options, const Context& context) const {
@@ -295,9 +315,14 @@ Result<UnwrappedAtlas> Atlas::unwrap(const UnwrapOptions& options, const Context
   view.seams = seams_;
   view.polygons = polygons_;
   if (object_count_ > 1) view.objects = objects_;
-  Result<UnwrappedMesh> all = unwrap_mesh(view, options, context);
+  const bool blocks =
+      std::ranges::any_of(instances_, [](const auto& densities) { return !densities.empty(); });
+  std::vector<std::vector<MeshInstance>> instances;
+  Result<UnwrappedMesh> all =
+      blocks ? unwrap_in_blocks(options, context, instances) : unwrap_mesh(view, options, context);
   if (!all.ok()) return all.status();
   UnwrappedAtlas unwrapped(std::move(*all), first_position_, first_triangle_);
+  unwrapped.instances_ = std::move(instances);
   for (std::size_t i = 0; i < mesh_count(); ++i) {
     unwrapped.triangle_polygon_.push_back(mesh_polygons_[i].polygon);
     unwrapped.polygon_uvs_.push_back(polygon_uvs(mesh_polygons_[i], unwrapped.triangles(i)));

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "libatlas/core/polygon.h"
+#include "libatlas/unwrap/instance.h"
 #include "libatlas/unwrap/strided.h"
 #include "libatlas/unwrap/unwrap.h"
 #include "libatlas/uvs/polygon_uvs.h"
@@ -38,7 +39,8 @@ struct StridedMesh {
   std::span<const std::uint32_t> polygon_sizes = {};
 };
 
-// What Atlas::unwrap() returns.
+// What Atlas::unwrap() returns. Where Atlas::add_instances() was called, each mesh lies in a
+// rectangle of its own.
 class UnwrappedAtlas {
  public:
   // Says of one mesh what UnwrappedMesh says, and triangle_chart. Pages and charts are those of the
@@ -57,13 +59,18 @@ class UnwrappedAtlas {
     // ChartOptions::max_stretch or cone_degrees, or that given uvs cut. Of them `polygon_corners`
     // has one part only; they are to be drawn as their triangles.
     std::span<const std::uint32_t> cut_polygons = {};
+    // One per instance of a mesh that add_instances() has added: where each has `uvs`, which then
+    // are 0..1 over the mesh's own rectangle. Empty: they are 0..1 over their page. triangle_page
+    // is that of the first instance.
+    std::span<const MeshInstance> instances = {};
   };
 
   std::size_t mesh_count() const { return first_vertex_.size() - 1; }
   Mesh mesh(std::size_t i) const;  // i: as Atlas::add() numbered them
   std::size_t mesh_of_chart(std::size_t chart) const;
 
-  // All meshes: their pages, charts and placements, and what was measured. Triangles and vertices
+  // All meshes: their pages, charts and placements (of an instanced mesh, those of its first
+  // instance), and what was measured. Triangles and vertices
   // are numbered through, in the order of the meshes, except in `indices` and `vertices`, which are
   // those of mesh(i), one mesh after the other.
   const UnwrappedMesh& all() const { return all_; }
@@ -80,6 +87,7 @@ class UnwrappedAtlas {
   // One per mesh, empty without polygons: the polygon of each triangle; uvs.
   std::vector<std::vector<std::uint32_t>> triangle_polygon_ = {};
   std::vector<PolygonUvs> polygon_uvs_ = {};
+  std::vector<std::vector<MeshInstance>> instances_ = {};  // one per mesh, or none
 };
 
 // Meshes that are to share an atlas. They keep their order, and are never joined to each other: a
@@ -96,6 +104,17 @@ class Atlas {
   Result<std::uint32_t> add(const StridedMesh& mesh, float density = 1);
   Result<std::uint32_t> add(const MeshView& mesh, float density = 1);
 
+  // Adds a copy of a mesh that is shown `count` times. It is unwrapped once, within a rectangle of
+  // its own, and each instance gets a place for a copy of that, larger by its relative linear
+  // density: one per instance, finite and > 0; empty: all 1. Charts keep the padding in the
+  // smallest copy. Every other mesh of the atlas gets a rectangle of its own then, too. Errors:
+  // those of add(); bad_input where there is no instance, or not one density for each; the message
+  // names the instance. unsupported: 2^30 instances.
+  Result<std::uint32_t> add_instances(const StridedMesh& mesh, std::size_t count,
+                                      std::span<const float> densities = {});
+  Result<std::uint32_t> add_instances(const MeshView& mesh, std::size_t count,
+                                      std::span<const float> densities = {});
+
   std::size_t mesh_count() const { return first_triangle_.size() - 1; }
 
   // Unwraps the meshes as unwrap_mesh() would one mesh that consists of them, and may be called
@@ -110,6 +129,13 @@ class Atlas {
   Result<std::vector<std::uint8_t>> seams(const UnwrappedAtlas& unwrapped, std::size_t mesh) const;
 
  private:
+  struct SubMesh {
+    std::vector<std::uint32_t> indices = {}, texcoord_indices = {};
+    MeshView view = {};  // refers to these, and to the atlas
+  };
+  SubMesh mesh_view(std::size_t mesh) const;
+  Result<UnwrappedMesh> unwrap_in_blocks(const UnwrapOptions& options, const Context& context,
+                                         std::vector<std::vector<MeshInstance>>& instances) const;
   Status add_polygons(const StridedMesh& mesh, float density);
   void append(const StridedMesh& mesh, float density);
   void append_polygons(const StridedMesh& mesh);
@@ -129,6 +155,8 @@ class Atlas {
   std::uint32_t object_count_ = 0;
   // One per mesh: its polygons, none of meshes of triangles.
   std::vector<PolygonCorners> mesh_polygons_ = {};
+  // One per mesh: the densities of its instances; none: it is not instanced.
+  std::vector<std::vector<float>> instances_ = {};
 };
 
 }  // namespace atlas

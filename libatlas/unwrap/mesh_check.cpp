@@ -131,7 +131,27 @@ class MeshCheck {
   std::size_t number_;
 };
 
+constexpr std::size_t kMostInstances = std::size_t{1} << 30;
+
 }  // namespace
+
+Status check_instances(std::size_t number, std::size_t count, std::span<const float> densities) {
+  const auto bad = [&](const std::string& text) {
+    return Status(ErrorCode::bad_input, fmt::format("mesh {}: {}", number, text));
+  };
+  if (count == 0) return bad("no instance (at least 1)");
+  if (!densities.empty() && densities.size() != count)
+    return bad(
+        fmt::format("{} densities for {} instances (one each, or none)", densities.size(), count));
+  if (count >= kMostInstances)
+    return {ErrorCode::unsupported,
+            fmt::format("mesh {}: {} instances (fewer than 2^30)", number, count)};
+  for (std::size_t i = 0; i < densities.size(); ++i)
+    if (!(densities[i] > 0) || !std::isfinite(densities[i]))
+      return bad(
+          fmt::format("instance {}: density {} (must be above 0 and finite)", i, densities[i]));
+  return {};
+}
 
 Status check_mesh(const StridedMesh& mesh, std::size_t number, float density) {
   return MeshCheck(mesh, number).run(density);

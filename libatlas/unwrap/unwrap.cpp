@@ -15,17 +15,17 @@
 #include "libatlas/unwrap/check_pages.h"
 #include "libatlas/unwrap/fill_pages.h"
 #include "libatlas/unwrap/part_gaps.h"
+#include "libatlas/unwrap/place_charts.h"
 #include "libatlas/uvs/finish_uvs.h"
 
 namespace atlas {
-namespace {
 
-std::int32_t padding(const UnwrapOptions& options) {
+std::int32_t padding_of(const UnwrapOptions& options) {
   if (options.mip_levels == 0) return options.padding;
   return std::max(options.padding, gutter_pad(options.mip_levels));
 }
 
-std::int32_t alignment(const UnwrapOptions& options) {
+std::int32_t alignment_of(const UnwrapOptions& options) {
   return std::lcm(options.alignment, 1 << options.mip_levels);
 }
 
@@ -36,10 +36,10 @@ Status check_options(const UnwrapOptions& options) {
   if (Status s = check_pages("unwrap", options); !s.ok()) return s;
   if (options.mip_levels < 0 || options.mip_levels > 10)
     return bad(fmt::format("mip_levels is {} (0 to 10)", options.mip_levels));
-  if (alignment(options) > options.page_size / 4 || padding(options) > options.page_size / 4)
+  if (alignment_of(options) > options.page_size / 4 || padding_of(options) > options.page_size / 4)
     return bad(fmt::format(
         "mip_levels is {}, whose cells of {} texels are more than a quarter of page_size",
-        options.mip_levels, alignment(options)));
+        options.mip_levels, alignment_of(options)));
   if (!(options.texels_per_unit >= 0) || !std::isfinite(options.texels_per_unit))
     return bad(fmt::format("texels_per_unit is {} (a number above 0, or 0 for as many as fit)",
                            options.texels_per_unit));
@@ -47,6 +47,8 @@ Status check_options(const UnwrapOptions& options) {
     return bad(fmt::format("preset is {} (give a PackPreset)", int(options.preset)));
   return {};
 }
+
+namespace {
 
 Result<PagesOfParts> lay_out(const MeshView& mesh, const UnwrapOptions& options, ChartSet& charts,
                              const Context& context) {
@@ -57,8 +59,8 @@ Result<PagesOfParts> lay_out(const MeshView& mesh, const UnwrapOptions& options,
   const double density =
       options.texels_per_unit > 0 ? std::min(options.texels_per_unit, filling) : filling;
   LayoutOptions layout{options};
-  layout.padding = padding(options);
-  layout.alignment = alignment(options);
+  layout.padding = padding_of(options);
+  layout.alignment = alignment_of(options);
   layout.minimum_side = 0;
   layout.outlines = true;
   layout.remedy = "ask for more pages, a larger page_size, less padding or fewer mip_levels";
@@ -106,20 +108,14 @@ UnwrapOptions lightmap_options(double texels_per_metre, double metres_per_unit) 
   return options;
 }
 
-Result<UnwrappedMesh> unwrap_mesh(const MeshView& mesh, const UnwrapOptions& options,
-                                  const Context& context) {
-  if (Status s = check_options(options); !s.ok()) return s;
-  MeshView view = mesh;
-  if (view.texcoord_indices.empty() && view.texcoords.size() == view.positions.size())
-    view.texcoord_indices = view.indices;
-  Result<ChartSet> charts = make_charts(view, options.charts, context);
-  if (!charts.ok()) return charts.status();
-  Result<PagesOfParts> laid = lay_out(view, options, *charts, context);
+Result<UnwrappedMesh> place_charts(const MeshView& mesh, ChartSet charts,
+                                   const UnwrapOptions& options, const Context& context) {
+  Result<PagesOfParts> laid = lay_out(mesh, options, charts, context);
   if (!laid.ok()) return laid.status();
   PageLayout& layout = laid->layout;
 
   UnwrappedMesh result;
-  result.charts = std::move(*charts);
+  result.charts = std::move(charts);
   result.pages = std::move(layout.pages);
   result.utilization = layout.uv_utilization;
   result.texels_per_unit = layout.placements[0].texels_per_unit.x;
@@ -141,6 +137,17 @@ Result<UnwrappedMesh> unwrap_mesh(const MeshView& mesh, const UnwrapOptions& opt
     result.triangle_page.push_back(std::uint32_t(result.placements[chart].page));
   if (context.cancelled()) return Status::cancelled();
   return result;
+}
+
+Result<UnwrappedMesh> unwrap_mesh(const MeshView& mesh, const UnwrapOptions& options,
+                                  const Context& context) {
+  if (Status s = check_options(options); !s.ok()) return s;
+  MeshView view = mesh;
+  if (view.texcoord_indices.empty() && view.texcoords.size() == view.positions.size())
+    view.texcoord_indices = view.indices;
+  Result<ChartSet> charts = make_charts(view, options.charts, context);
+  if (!charts.ok()) return charts.status();
+  return place_charts(view, std::move(*charts), options, context);
 }
 
 }  // namespace atlas

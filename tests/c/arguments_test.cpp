@@ -82,6 +82,17 @@ class RandomArguments : public testing::Test {
     if (!often()) m.seams = seams_.data();
     if (!often()) m.triangle_density = densities_.data();
     m.density = float(number(1));
+    if (!often()) {
+      // Sizes that add up to the indices, but for a while.
+      m.polygon_count = 0;
+      for (std::size_t left = m.index_count; left > 2;) {
+        const std::uint32_t size = left < 6 ? std::uint32_t(left) : 3 + below(3);
+        sizes_[m.polygon_count++] = often() ? size : below(5);
+        left -= size;
+      }
+      m.polygon_sizes = often() ? sizes_.data() : nullptr;
+      if (!often()) m.polygon_count = below(30);
+    }
     return m;
   }
 
@@ -157,6 +168,7 @@ class RandomArguments : public testing::Test {
   std::array<std::uint32_t, 100> wide_ = {};
   std::array<std::uint16_t, 100> narrow_ = {};
   std::array<std::uint32_t, 40> materials_ = {};
+  std::array<std::uint32_t, 40> sizes_ = {};
   std::array<std::uint8_t, 100> seams_ = {};
   std::array<float, 40> densities_ = {};
   int done_ = 0, refused_ = 0;
@@ -169,7 +181,11 @@ TEST_F(RandomArguments, OfMeshesAndUnwrapping) {
     ASSERT_EQ(libatlas_atlas_create(context_, &atlas), LIBATLAS_OK);
     for (std::uint32_t n = below(4); n-- > 0;) {
       const libatlas_mesh m = mesh();
-      count(libatlas_add_mesh(context_, atlas, &m, nullptr));
+      if (often())
+        count(libatlas_add_mesh(context_, atlas, &m, nullptr));
+      else
+        count(libatlas_add_instances(context_, atlas, &m, often() ? densities_.data() : nullptr,
+                                     below(5), nullptr));
     }
     const libatlas_unwrap_options o = options();
     libatlas_unwrapped* unwrapped = nullptr;
@@ -180,6 +196,24 @@ TEST_F(RandomArguments, OfMeshesAndUnwrapping) {
     if (count(libatlas_get_mesh(context_, unwrapped, below(3), &uvs))) {
       for (std::size_t k = 0; k < 2 * uvs.vertex_count; ++k)
         EXPECT_TRUE(uvs.uvs[k] >= 0 && uvs.uvs[k] <= 1) << uvs.uvs[k];
+    }
+    libatlas_instances instances = {};
+    instances.size = often() ? sizeof instances : below(50);
+    if (count(libatlas_get_instances(context_, unwrapped, below(3), &instances))) {
+      for (std::size_t k = 0; k < instances.instance_count; ++k) {
+        EXPECT_TRUE(instances.instances[k].scale[0] >= 0 && instances.instances[k].scale[1] <= 1);
+      }
+    }
+    libatlas_polygon_uvs polygons = {};
+    polygons.size = often() ? sizeof polygons : below(200);
+    const std::uint32_t number = below(3);
+    uvs.size = sizeof uvs;
+    if (count(libatlas_get_polygons(context_, unwrapped, number, &polygons)) &&
+        libatlas_get_mesh(context_, unwrapped, number, &uvs) == LIBATLAS_OK) {
+      for (std::size_t k = 0; k < polygons.corner_count; ++k)
+        EXPECT_LT(polygons.corners[k], uvs.vertex_count);
+      for (std::size_t k = 0; k < polygons.cut_count; ++k)
+        EXPECT_LT(polygons.cut_polygons[k], polygons.polygon_count);
     }
     libatlas_unwrapped_destroy(unwrapped);
     libatlas_atlas_destroy(atlas);

@@ -15,7 +15,6 @@
 
 #include "libatlas/core/counted.h"
 #include "libatlas/core/drop_rounding.h"
-#include "libatlas/core/file_extension.h"
 #include "libatlas/core/image.h"
 #include "libatlas/core/luma.h"
 #include "libatlas/core/parse_number.h"
@@ -23,7 +22,8 @@
 #include "libatlas/core/random.h"
 #include "libatlas/core/text_buffer.h"
 #include "libatlas/core/text_hash.h"
-#include "libatlas/core/write_error.h"
+#include "libatlas/files/file_extension.h"
+#include "libatlas/files/write_error.h"
 
 namespace atlas {
 namespace {

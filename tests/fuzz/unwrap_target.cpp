@@ -1,7 +1,8 @@
+#include <algorithm>
 #include <cmath>
 #include <vector>
 
-#include "libatlas/unwrap/unwrap.h"
+#include "libatlas/unwrap/atlas.h"
 #include "tests/fuzz/effort.h"
 #include "tests/fuzz/targets.h"
 #include "tests/support/atlas_measure.h"
@@ -146,6 +147,71 @@ std::string judge(const Mesh& mesh, const UnwrappedMesh& flat, const ChartOption
   return {};
 }
 
+// The indices as polygons of three to eight corners, with what is said of their triangles.
+struct Polygons {
+  std::vector<std::uint32_t> sizes, materials;
+  std::vector<float> density;
+};
+
+Polygons polygons_of(const Mesh& mesh) {
+  Polygons out;
+  for (std::size_t at = 0; at < mesh.indices.size();) {
+    const std::size_t left = mesh.indices.size() - at;
+    std::size_t size = 3 + (mesh.indices[at] + out.sizes.size()) % 6;
+    if (left < size + 3) size = left;
+    if (!mesh.materials.empty()) out.materials.push_back(mesh.materials[at / 3]);
+    if (!mesh.density.empty()) out.density.push_back(mesh.density[at / 3]);
+    out.sizes.push_back(std::uint32_t(size));
+    at += size;
+  }
+  return out;
+}
+
+// Each corner has its own vertex, and all triangles of a whole polygon have its corners.
+std::string judge_polygons(const Mesh& mesh, const Polygons& polygons,
+                           const UnwrappedAtlas::Mesh& flat) {
+  if (flat.polygon_corners.size() != mesh.indices.size()) return "corners were lost";
+  for (std::size_t i = 0; i < mesh.indices.size(); ++i)
+    if (flat.vertices[flat.polygon_corners[i]] != mesh.indices[i]) return "a corner's other vertex";
+  std::size_t triangle = 0, first = 0;
+  for (std::uint32_t p = 0; p < polygons.sizes.size(); ++p) {
+    const auto corners = flat.polygon_corners.subspan(first, polygons.sizes[p]);
+    bool whole = true;
+    for (std::size_t i = 3 * triangle; i < 3 * (triangle + corners.size() - 2); ++i)
+      whole = whole && std::find(corners.begin(), corners.end(), flat.indices[i]) != corners.end();
+    const bool named = std::ranges::binary_search(flat.cut_polygons, p);
+    if (!whole && !named) return "a polygon that is cut but not named";
+    first += corners.size();
+    triangle += corners.size() - 2;
+  }
+  return triangle == flat.triangle_page.size() ? "" : "triangles were lost";
+}
+
+FuzzResult fuzz_polygons(const Mesh& mesh, const UnwrapOptions& options, const Context& context) {
+  const Polygons polygons = polygons_of(mesh);
+  StridedMesh view{.positions = {mesh.positions.data(), mesh.positions.size(), 0},
+                   .indices = {mesh.indices.data(), mesh.indices.size(), 4},
+                   .texcoords = {mesh.texcoords.data(), mesh.texcoords.size(), 0},
+                   .materials = polygons.materials,
+                   .density = polygons.density,
+                   .polygon_sizes = polygons.sizes};
+  Atlas atlas;
+  if (const auto added = atlas.add(view); !added.ok())
+    return {"polygons refused: " + added.status().message()};
+  const Result<UnwrappedAtlas> flat = atlas.unwrap(options, context);
+  if (!flat.ok()) {
+    const bool too_small = flat.status().code() == ErrorCode::no_solution;
+    return {too_small ? "" : "refused: " + flat.status().message()};
+  }
+  if (std::string fault = judge_polygons(mesh, polygons, flat->mesh(0)); !fault.empty())
+    return {fault, true};
+  Mesh triangles = mesh;
+  triangles.indices.clear();
+  for (const std::uint32_t v : flat->mesh(0).indices)
+    triangles.indices.push_back(flat->mesh(0).vertices[v]);
+  return {judge(triangles, flat->all(), options.charts), true};
+}
+
 }  // namespace
 
 FuzzResult fuzz_unwrap(FuzzBytes data) {
@@ -164,6 +230,7 @@ FuzzResult fuzz_unwrap(FuzzBytes data) {
   view.density = mesh.density;
   Context context;
   context.threads = 1;
+  if (more & 32) return fuzz_polygons(mesh, options, context);
   const Effort effort;  // of charts alone: packing has other bounds
   const Result<ChartSet> charts = make_charts(view, options.charts, context);
   if (std::string much = effort.fault(mesh.indices.size() / 3); !much.empty()) return {much};

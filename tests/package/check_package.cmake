@@ -12,7 +12,9 @@ function(run)
   set(output "${output}" PARENT_SCOPE)
 endfunction()
 
-run(${CMAKE_COMMAND} --install ${BUILD} --prefix ${prefix} --component development)
+foreach(component library development)
+  run(${CMAKE_COMMAND} --install ${BUILD} --prefix ${prefix} --component ${component})
+endforeach()
 
 # Nothing may be called libatlas.so or libatlas.a, which belong to the ATLAS BLAS. Internal headers
 # must not be installed.

@@ -82,6 +82,38 @@ PolygonShape comb(std::uint32_t teeth) {
   return out;
 }
 
+PolygonShape bricks(std::uint32_t rows, std::uint32_t columns) {
+  PolygonShape out;
+  std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> number;
+  // Around a tube, in half bricks; joints of a row lie in the middle of the bricks of the next one.
+  const std::uint32_t around = 2 * columns;
+  const auto corner = [&](std::uint32_t half, std::uint32_t row) {
+    half %= around;
+    const auto [known, added] =
+        number.try_emplace({half, row}, std::uint32_t(out.positions.size()));
+    if (added) {
+      const std::uint32_t side = half / (around / 4), along = half % (around / 4);
+      const float s = float(along), w = float(around / 4);
+      const std::pair<float, float> at[] = {{s, 0.f}, {w, s}, {w - s, w}, {0.f, w - s}};
+      out.positions.push_back({at[side].first, at[side].second, float(row)});
+    }
+    return known->second;
+  };
+  for (std::uint32_t row = 0; row < rows; ++row) {
+    for (std::uint32_t k = 0; k < columns; ++k) {
+      const std::uint32_t left = 2 * k + row % 2;
+      std::vector<std::uint32_t> brick{corner(left, row)};
+      if (row > 0) brick.push_back(corner(left + 1, row));
+      brick.push_back(corner(left + 2, row));
+      brick.push_back(corner(left + 2, row + 1));
+      if (row + 1 < rows) brick.push_back(corner(left + 1, row + 1));
+      brick.push_back(corner(left, row + 1));
+      out.add(brick);
+    }
+  }
+  return out;
+}
+
 PolygonShape frame() {
   PolygonShape out;
   for (const float r : {2.0f, 1.0f})

@@ -26,6 +26,9 @@ PolygonShape quads_of(const Shape& shape);
 PolygonShape dual_of(const Shape& shape);
 // A flat comb with this many teeth as one concave polygon.
 PolygonShape comb(std::uint32_t teeth);
+// A square tube of bricks, rows * columns, in which the corners
+// of a brick lie on the long sides of others and belong to their outlines. 4 divides 2 * columns.
+PolygonShape bricks(std::uint32_t rows, std::uint32_t columns);
 // A flat square with a square hole as one polygon, joined by an edge there and back.
 PolygonShape frame();
 

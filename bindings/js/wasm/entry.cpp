@@ -28,5 +28,9 @@ TO_JAVASCRIPT("create_context") libatlas_context* create_context() {
   return context;
 }
 
-TO_JAVASCRIPT("allocate") void* allocate(std::size_t bytes) { return ::operator new(bytes); }
-TO_JAVASCRIPT("release") void release(void* memory) { ::operator delete(memory); }
+TO_JAVASCRIPT("allocate") void* allocate(std::size_t bytes) {
+  return ::operator new(bytes);
+}
+TO_JAVASCRIPT("release") void release(void* memory) {
+  ::operator delete(memory);
+}

@@ -23,6 +23,10 @@ constexpr double kLongest = 1 << 16;  // the most steps of an edge, so that sums
 constexpr int kHubTriangles = 128;
 constexpr double kNeedle = 16;
 
+// Where more triangles meet, no cut moves one of them: each would walk around all others. A flat fan
+// of so many consists of needles.
+constexpr int kMostAround = 1024;
+
 class PairStraightener {
  public:
   PairStraightener(const SharedBands& shared, const BorderPair& pair, PairScratch& scratch)
@@ -68,8 +72,19 @@ class PairStraightener {
   // Returns the triangle's index in the band; kNoIndex: not in the band.
   std::uint32_t place(std::uint32_t t) const { return side(t) == 2 ? kNoIndex : places_[t]; }
 
-  // Adds t to the band, unless it lies at a seam of its chart with itself, or at a hub.
+  // Adds t to the band, with the rest of its polygon, unless it lies at a seam of its chart with
+  // itself, or at a hub.
   void reach(std::uint32_t t) {
+    const std::size_t first = band_.size();
+    reach_one(t);
+    if (topology_.polygon.empty()) return;
+    for (std::size_t i = first; i < band_.size(); ++i) {
+      for (std::uint32_t h = 3 * band_[i]; h < 3 * band_[i] + 3; ++h)
+        if (topology_.inner(h)) reach_one(topology_.opposite[h] / 3);
+    }
+  }
+
+  void reach_one(std::uint32_t t) {
     if (side(t) == 2 || places_[t] != kNoIndex || partition_.seams[t] || at_hub(t)) return;
     places_[t] = static_cast<std::uint32_t>(band_.size());
     band_.push_back(t);
@@ -238,6 +253,7 @@ class PairStraightener {
           }
         }
         fans_.push_back(first_of_fan(h));
+        if (fans_.back() == kNoIndex) return false;
       }
     }
     std::sort(fans_.begin(), fans_.end());
@@ -260,15 +276,17 @@ class PairStraightener {
     return side_at(h / 3, after) == s || (o != kNoIndex && side_at(o / 3, after) == s);
   }
   // Returns a name for the fan of triangles around the start of h: its first half-edge in
-  // counter-clockwise order, or the smallest one if the fan is closed.
+  // counter-clockwise order, or the smallest one if the fan is closed; kNoIndex if that is too far
+  // away.
   std::uint32_t first_of_fan(std::uint32_t h) const {
-    std::uint32_t least = h;
-    for (std::uint32_t at = h;;) {
+    std::uint32_t least = h, at = h;
+    for (int count = 0; count < kMostAround; ++count) {
       if (topology_.opposite[at] == kNoIndex) return at;
       at = next_half_edge(topology_.opposite[at]);
       if (at == h) return least;
       least = std::min(least, at);
     }
+    return kNoIndex;
   }
 
   // Returns how many vertices of side s a fan contains: one for each run of triangles on that side.

@@ -98,8 +98,21 @@ const GltfRows* GltfData::source_rows(int number) {
   return at->second ? &*at->second : nullptr;
 }
 
-std::optional<std::size_t> GltfData::rows(int number, std::span<const std::uint32_t> vertices,
+std::optional<std::size_t> GltfData::rows(int number, const std::vector<std::uint32_t>& vertices,
                                           bool bounds) {
+  const auto [at, is_new] = added_[vertices].try_emplace({number, bounds});
+  if (is_new) at->second = add_rows(number, vertices, bounds);
+  return at->second;
+}
+
+std::size_t GltfData::indices(const std::vector<std::uint32_t>& values) {
+  const auto [at, is_new] = indices_.try_emplace(values);
+  if (is_new) at->second = document_.add_indices(values);
+  return at->second;
+}
+
+std::optional<std::size_t> GltfData::add_rows(int number, std::span<const std::uint32_t> vertices,
+                                              bool bounds) {
   const GltfRows* rows = source_rows(number);
   if (!rows || vertices.empty()) return {};
   if (*std::max_element(vertices.begin(), vertices.end()) >= rows->count) return {};

@@ -7,8 +7,8 @@
 #include <string>
 #include <string_view>
 
-#include "libatlas/core/file_extension.h"
 #include "libatlas/exporters/gltf_kept/gltf_data.h"
+#include "libatlas/exporters/gltf_kept/gltf_kept_instances.h"
 #include "libatlas/exporters/gltf_kept/gltf_kept_materials.h"
 #include "libatlas/exporters/gltf_kept/gltf_kept_meshes.h"
 #include "libatlas/exporters/gltf_kept/gltf_kept_nodes.h"
@@ -16,6 +16,7 @@
 #include "libatlas/exporters/gltf_kept/gltf_kept_unit.h"
 #include "libatlas/exporters/writing/scene_writers.h"
 #include "libatlas/exporters/writing/unify_vertices.h"
+#include "libatlas/files/file_extension.h"
 
 namespace atlas {
 namespace fs = std::filesystem;
@@ -99,7 +100,11 @@ class FileWriter {
     if (Status s = check_triangles(); !s.ok()) return s;
     if (positions_mark(scene_) != source_.positions_mark) return other_positions();
     if (Status s = materials_.write_images(textures); !s.ok()) return s;
-    const std::vector<std::size_t> numbers = number_kept_meshes(source_);
+    const bool once = world_.instances.has_value();
+    if (once && !world_.instances->empty() && world_.instances->size() != source_.places.size())
+      return {ErrorCode::bad_input, fmt::format("the world has {} instances, its scene {}",
+                                                world_.instances->size(), source_.places.size())};
+    const std::vector<std::size_t> numbers = number_kept_meshes(source_, once);
     const std::set<std::size_t> own(numbers.begin(), numbers.end());
     const std::size_t count = source_.model.meshes.size();
     json meshes = json::array();
@@ -107,15 +112,18 @@ class FileWriter {
       meshes.push_back(own.contains(m) ? json::object() : unchanged_mesh(m));
     for (std::size_t p = 0; p < numbers.size(); ++p) {
       if (context.cancelled()) return Status::cancelled();
-      meshes[numbers[p]] = mesh_of(source_.places[p], result);
+      if (meshes[numbers[p]].empty())  // else another place has it already
+        meshes[numbers[p]] = mesh_of(source_.places[p], result);
       context.report("writing the world", double(p + 1) / double(numbers.size()));
     }
     document_.json["meshes"] = std::move(meshes);
-    place_kept_meshes(world_, numbers, document_.json, losses_);
+    const std::vector<std::size_t> holders =
+        place_kept_meshes(world_, numbers, document_.json, losses_);
     if (world_.metres_per_unit != 1)
       scale_kept_lengths(world_.metres_per_unit, document_.json, losses_);
     drop_empty_meshes(document_.json, losses_);
     keep_rest(source_, data_, document_.json, losses_);
+    if (once) name_instances(world_, holders, document_, losses_);
     name_asset();
     result.uv_set = texcoord_name(set_);
     document_.add_info("the new uvs: " + result.uv_set);
@@ -259,7 +267,7 @@ class FileWriter {
       pages[page_of(shown.first_triangle + k / 3)].push_back(unified.indices[k]);
     for (const auto& [page, indices] : pages) {
       json part = primitive;
-      part["indices"] = document_.add_indices(indices);
+      part["indices"] = data_.indices(indices);
       name_lightmap_page(world_, page, part);
       to["primitives"].push_back(std::move(part));
     }

@@ -42,12 +42,14 @@ class Walk {
   struct Target {
     json& nodes;
     Losses& losses;
+    bool once;  // instances stay what they are
   };
   Walk(const GltfSource& source, const std::vector<std::size_t>& meshes, const Target& target)
       : source_(source),
         meshes_(meshes),
         nodes_(target.nodes),
         losses_(target.losses),
+        once_(target.once),
         visited_(source.model.nodes.size()) {}
 
   // Returns the number of the node that shows what `node` shows on this visit.
@@ -70,6 +72,8 @@ class Walk {
   }
 
   const InstanceNodes& instances() const { return instances_; }
+  // The nodes of the places, in their order.
+  std::vector<std::size_t> take_holders() { return std::move(holders_); }
 
  private:
   // Gives the node its mesh. If it has instances, returns the new nodes for them.
@@ -77,8 +81,9 @@ class Walk {
     json instances = json::array();
     json holder;  // skin and weights, which go with the mesh
     for (; next_ < meshes_.size() && source_.places[next_].visit == visit; ++next_) {
-      if (!source_.places[next_].instance) {
+      if (!source_.places[next_].instance || once_) {
         nodes_[node]["mesh"] = meshes_[next_];
+        holders_.push_back(node);
         continue;
       }
       if (instances.empty()) {
@@ -96,6 +101,7 @@ class Walk {
       if (const std::string& name = source_.model.nodes[node_of(next_)].name; !name.empty())
         instance["name"] = fmt::format("{}_{}", name, instances.size());
       instances.push_back(nodes_.size());
+      holders_.push_back(nodes_.size());
       instances_[node_of(next_)].push_back(nodes_.size());
       nodes_.push_back(std::move(instance));
     }
@@ -121,7 +127,9 @@ class Walk {
   const std::vector<std::size_t>& meshes_;
   json& nodes_;
   Losses& losses_;
+  bool once_;
   std::vector<bool> visited_;
+  std::vector<std::size_t> holders_;
   InstanceNodes instances_;
   std::size_t visits_ = 0, next_ = 0;
 };
@@ -184,7 +192,7 @@ void set_roots(const GltfSource& source, json roots, json& document) {
 
 }  // namespace
 
-std::vector<std::size_t> number_kept_meshes(const GltfSource& source) {
+std::vector<std::size_t> number_kept_meshes(const GltfSource& source, bool once) {
   const tinygltf::Model& model = source.model;
   std::vector<bool> shows(model.nodes.size()), taken(model.meshes.size());
   for (const GltfPlace& place : source.places)
@@ -198,23 +206,26 @@ std::vector<std::size_t> number_kept_meshes(const GltfSource& source) {
   std::size_t next = model.meshes.size();
   for (const GltfPlace& place : source.places) {
     const auto mesh = static_cast<std::size_t>(place.mesh);
-    result.push_back(taken[mesh] ? next++ : mesh);
+    result.push_back(taken[mesh] && !once ? next++ : mesh);
     taken[mesh] = true;
   }
   return result;
 }
 
-void place_kept_meshes(const World& world, const std::vector<std::size_t>& meshes, json& document,
-                       Losses& losses) {
+std::vector<std::size_t> place_kept_meshes(const World& world,
+                                           const std::vector<std::size_t>& meshes, json& document,
+                                           Losses& losses) {
   const GltfSource& source = *world.scene->source;
   json& nodes = document["nodes"];
   if (!nodes.is_array()) nodes = json::array();
   json roots = json::array();
-  Walk walk(source, meshes, {nodes, losses});
+  Walk walk(source, meshes, {nodes, losses, world.instances.has_value()});
   for (const int root : source.roots) roots.push_back(walk.visit(root));
+  std::vector<std::size_t> holders = walk.take_holders();
   for (std::size_t i = 0; i < meshes.size(); ++i) {
     if (source.places[i].node >= 0) continue;
     roots.push_back(nodes.size());
+    holders.push_back(nodes.size());
     nodes.push_back({{"mesh", meshes[i]}});
   }
   animate_copies(source, meshes, document);
@@ -231,6 +242,7 @@ void place_kept_meshes(const World& world, const std::vector<std::size_t>& meshe
     }
   }
   set_roots(source, std::move(roots), document);
+  return holders;
 }
 
 }  // namespace atlas

@@ -12,14 +12,16 @@ namespace atlas {
 
 // Returns for each place of the source the number of its mesh, which no other place and no other
 // node has: that of the mesh that the place shows if it is free, otherwise one behind the source's
-// meshes.
-std::vector<std::size_t> number_kept_meshes(const GltfSource& source);
+// meshes. `once`: all places of a mesh share its number.
+std::vector<std::size_t> number_kept_meshes(const GltfSource& source, bool once);
 
 // Puts meshes of these numbers, one per place, into the nodes of `document`, which are those of the
-// source. Instances of a node become its children; a node with several parents becomes one node per
-// parent. What instances have besides their places is counted. If the world is not in metres or not
-// y-up, another node is added above those that are shown.
-void place_kept_meshes(const World& world, const std::vector<std::size_t>& meshes,
-                       nlohmann::json& document, Losses& losses);
+// source. Instances of a node become its children, unless the world has each mesh once
+// (World::instances); a node with several parents becomes one node per parent. What instances have
+// besides their places is counted. Returns the node of each place. If the world is not in metres or
+// not y-up, another node is added above those that are shown.
+std::vector<std::size_t> place_kept_meshes(const World& world,
+                                           const std::vector<std::size_t>& meshes,
+                                           nlohmann::json& document, Losses& losses);
 
 }  // namespace atlas

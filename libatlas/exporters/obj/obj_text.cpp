@@ -61,12 +61,14 @@ void write_obj_uvs(TextFile& file, const World& world, std::span<const std::uint
 
 void write_obj_faces(TextFile& file, const ObjCorners& corners, const Context& context) {
   std::vector<std::size_t> first(corners.sizes.size() + 1, 0);
-  std::partial_sum(corners.sizes.begin(), corners.sizes.end(), first.begin() + 1, std::plus<std::size_t>());
+  std::partial_sum(corners.sizes.begin(), corners.sizes.end(), first.begin() + 1,
+                   std::plus<std::size_t>());
   const bool triangles = corners.sizes.empty();
   const std::size_t faces = triangles ? corners.points.size() / 3 : corners.sizes.size();
   file.write_items(faces, context, [&](TextBuffer& out, std::size_t f) {
     out.character('f');
-    const std::size_t begin = triangles ? 3 * f : first[f], end = triangles ? 3 * f + 3 : first[f + 1];
+    const std::size_t begin = triangles ? 3 * f : first[f],
+                      end = triangles ? 3 * f + 3 : first[f + 1];
     for (std::size_t k = begin; k < end; ++k) {
       out.character(' ');
       out.number(corners.points[k] + 1);
