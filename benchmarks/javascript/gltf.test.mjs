@@ -142,6 +142,23 @@ test("texels have one size in the scene", async () => {
   assert.ok(Math.abs(area(large) / area(small) - 9) < 0.3, `${area(large) / area(small)}`);
 });
 
+test("instances have places apart, in the extras of their nodes", async () => {
+  const { document } = files["several meshes and scales on one page"]();
+  const before = primitives(document).map(drawn);
+  await document.transform(ours({ groupBy: "scene", instances: true, library }));
+  assert.deepEqual(primitives(document).map(drawn), before);
+  const places = document.getRoot().listNodes().map((node) => node.getExtras());
+  assert.equal(places.length, 3);
+  for (const { lightmapScale, lightmapOffset } of places) {
+    [0, 1].forEach((k) => assert.ok(lightmapOffset[k] >= 0 && lightmapOffset[k] + lightmapScale[k] <= 1.000001));
+  }
+  const apart = (a, b) => [0, 1].some((k) => a.lightmapOffset[k] + a.lightmapScale[k] <= b.lightmapOffset[k] || b.lightmapOffset[k] + b.lightmapScale[k] <= a.lightmapOffset[k]);
+  places.forEach((a, i) => places.slice(0, i).forEach((b) => assert.ok(apart(a, b))));
+  for (const primitive of primitives(document)) assert.ok(primitive.getAttribute("TEXCOORD_0").getArray().every((x) => x >= 0 && x <= 1));
+  assert.deepEqual(await validated(document), []);
+  await assert.rejects(document.transform(ours({ instances: true, library })), /groupBy/);
+});
+
 test("primitives that have uvs are left alone, and so are lines", async () => {
   const document = begun(), primitive = primitiveOf(document, box());
   primitive.setAttribute("TEXCOORD_0", accessor(document, "VEC2", new Float32Array(300)));

@@ -17,6 +17,9 @@ export interface UnwrapPrimitivesOptions extends Omit<UnwrapOptions, "pages"> {
 export interface UnwrapTransformOptions extends Omit<UnwrapPrimitivesOptions, "weights"> {
   /** Which primitives share a page; default "mesh". With "scene", texels have one size in the scene. */
   groupBy?: "primitive" | "mesh" | "scene";
+  /** With "scene": unwrap each mesh once, and give each node that shows it a place for the mesh's uvs, in its extras:
+   * uv * lightmapScale + lightmapOffset. Default false: nodes that show a mesh share its place. */
+  instances?: boolean;
 }
 
 export function unwrap(options?: UnwrapTransformOptions): Transform;

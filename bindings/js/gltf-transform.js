@@ -1,5 +1,5 @@
 // unwrap(options): a transform for glTF-Transform, called as its own one.
-import { BadOptionError } from "./lib/errors.js";
+import { BadInputError, BadOptionError } from "./lib/errors.js";
 import { gather } from "./lib/gather.js";
 
 const triangles = 4, strip = 5, fan = 6;
@@ -10,7 +10,9 @@ export function unwrap(options = {}) {
     const { groupBy = "mesh" } = options;
     const groups = groupings[groupBy];
     if (!groups) throw new BadOptionError(`groupBy is ${groupBy}, and can be ${Object.keys(groupings).join(", ")}`);
-    for (const group of groups(document)) await unwrapPrimitives(group.primitives, { weights: group.weights, ...options });
+    if (options.instances && groupBy !== "scene") throw new BadOptionError('instances have places on one page: set groupBy to "scene"');
+    if (options.instances) await unwrapInstances(document, options);
+    else for (const group of groups(document)) await unwrapPrimitives(group.primitives, { weights: group.weights, ...options });
     document.getLogger().debug("unwrap: Complete.");
   };
   Object.defineProperty(transform, "name", { value: "unwrap" });
@@ -39,8 +41,11 @@ function eachOnce(document) {
 }
 
 // Of the nodes that show the mesh, so that texels are of one size in the scene.
-function largestScale(mesh) {
-  const nodes = mesh.listParents().filter((parent) => typeof parent.getWorldScale === "function");
+const largestScale = (mesh) => scaleOf(nodesOf(mesh));
+
+const nodesOf = (mesh) => mesh.listParents().filter((parent) => typeof parent.getWorldScale === "function");
+
+function scaleOf(nodes) {
   const scale = Math.max(0, ...nodes.flatMap((node) => node.getWorldScale().map(Math.abs)));
   return Number.isFinite(scale) && scale > 0 ? scale : 1;
 }
@@ -48,26 +53,83 @@ function largestScale(mesh) {
 // weights: relative density of texels, one a primitive; library: what load() or startWorker() returned; the others are
 // options of Library.unwrap(). Returns its result, or null if no primitive needs uvs.
 export async function unwrapPrimitives(primitives, options = {}) {
-  const { texcoord = 0, overwrite = false, weights, library, normals = false, groupBy, watlas, ...ofUnwrap } = options;
-  if (!Number.isInteger(texcoord) || texcoord < 0) throw new BadOptionError(`texcoord is ${texcoord}, and has to be 0, 1, 2, ...`);
-  if ((ofUnwrap.pages ?? 1) !== 1) throw new BadOptionError("pages has to be 1: the uvs of a glTF file lie on one texture");
-  const semantic = `TEXCOORD_${texcoord}`;
-  const density = (i) => weights?.[i] ?? 1;
+  const { texcoord, ofMesh, ofUnwrap, calls } = await parted(options);
   const wanted = primitives
-    .map((primitive, i) => ({ primitive, density: density(i), indices: triangleIndices(primitive) }))
-    .filter(({ primitive, indices }) => indices?.length && (overwrite || !primitive.getAttribute(semantic)));
+    .map((primitive, i) => ({ primitive, mesh: meshOf(primitive, ofMesh), density: options.weights?.[i] ?? 1 }))
+    .filter(({ mesh }) => mesh);
   if (wanted.length === 0) return null;
-  const calls = library ?? (await (loaded ??= import("libatlas").then(({ load }) => load())));
-  const meshes = wanted.map(({ primitive, density, indices }) => ({
-    positions: floatsOf(primitive.getAttribute("POSITION")),
-    indices,
-    density,
-    normals: normals && primitive.getAttribute("NORMAL") ? floatsOf(primitive.getAttribute("NORMAL")) : undefined,
-    texcoords: ofUnwrap.keepUvs && primitive.getAttribute("TEXCOORD_0") ? floatsOf(primitive.getAttribute("TEXCOORD_0")) : undefined,
-  }));
-  const result = await calls.unwrap(meshes, ofUnwrap);
+  const result = await calls.unwrap(wanted.map(({ mesh, density }) => ({ ...mesh, density })), ofUnwrap);
   wanted.forEach(({ primitive }, i) => put(primitive, result.meshes[i], texcoord));
   return result;
+}
+
+// Who takes which options.
+async function parted(options) {
+  const { texcoord = 0, overwrite = false, weights, library, normals = false, groupBy, instances, watlas, ...ofUnwrap } = options;
+  if (!Number.isInteger(texcoord) || texcoord < 0) throw new BadOptionError(`texcoord is ${texcoord}, and has to be 0, 1, 2, ...`);
+  if ((ofUnwrap.pages ?? 1) !== 1) throw new BadOptionError("pages has to be 1: the uvs of a glTF file lie on one texture");
+  const calls = library ?? (await (loaded ??= import("libatlas").then(({ load }) => load())));
+  return { texcoord, ofUnwrap, calls, ofMesh: { normals, keepUvs: ofUnwrap.keepUvs, unless: overwrite ? null : `TEXCOORD_${texcoord}` } };
+}
+
+// What is unwrapped of a primitive; null if it has no triangles or needs no uvs.
+function meshOf(primitive, { normals, keepUvs, unless }) {
+  const indices = unless && primitive.getAttribute(unless) ? null : triangleIndices(primitive);
+  if (!indices?.length) return null;
+  const floats = (semantic) => primitive.getAttribute(semantic) && floatsOf(primitive.getAttribute(semantic));
+  return { positions: floats("POSITION"), indices, normals: normals ? floats("NORMAL") : null, texcoords: keepUvs ? floats("TEXCOORD_0") : null };
+}
+
+// Each mesh has uvs of 0..1 over a rectangle, and each node that shows it a place for them in its extras: lightmapScale
+// and lightmapOffset, as atlas-export --instances extras writes them.
+async function unwrapInstances(document, options) {
+  const { texcoord, ofMesh, ofUnwrap, calls } = await parted({ ...options, keepUvs: false });
+  const shown = document.getRoot().listMeshes().map((mesh) => ({ nodes: nodesOf(mesh), parts: partsOf(mesh, ofMesh) }))
+    .filter(({ nodes, parts }) => nodes.length > 0 && parts.length > 0);
+  const primitives = shown.flatMap(({ parts }) => parts.map(({ primitive }) => primitive));
+  if (new Set(primitives).size < primitives.length) throw new BadInputError("two meshes share a primitive, which can have one place only: duplicate it");
+  if (shown.length === 0) return;
+  const meshes = shown.map(({ nodes, parts }) => ({ ...joined(parts), instances: nodes.map((node) => scaleOf([node])) }));
+  const result = await calls.unwrap(meshes, ofUnwrap);
+  shown.forEach(({ nodes, parts }, i) => {
+    const { instances: { scale, offset }, ...whole } = result.meshes[i];
+    let first = 0;
+    for (const { primitive, mesh } of parts) {
+      put(primitive, partOf(whole, first, mesh.positions.length / 3), texcoord);
+      first += mesh.positions.length / 3;
+    }
+    nodes.forEach((node, k) => {
+      const [x, y, width, height] = [offset[2 * k], offset[2 * k + 1], scale[2 * k], scale[2 * k + 1]];
+      node.setExtras({ ...node.getExtras(), lightmapScale: [width, height], lightmapOffset: [x, 1 - y - height] });
+    });
+  });
+}
+
+const partsOf = (mesh, ofMesh) =>
+  mesh.listPrimitives().map((primitive) => ({ primitive, mesh: meshOf(primitive, ofMesh) })).filter(({ mesh }) => mesh);
+
+// The primitives of a mesh as one; each is a material, so that no chart holds triangles of two.
+function joined(parts) {
+  const positions = [], indices = [], materials = [], normals = [];
+  parts.forEach(({ mesh }, i) => {
+    const first = positions.length / 3;
+    for (const x of mesh.positions) positions.push(x);
+    for (const x of mesh.normals ?? []) normals.push(x);
+    for (const v of mesh.indices) indices.push(first + v);
+    for (let t = 0; t < mesh.indices.length; t += 3) materials.push(i);
+  });
+  return { positions, indices, materials, normals: normals.length === positions.length ? normals : null };
+}
+
+// Of a result, what copies `count` vertices from the first on.
+function partOf({ vertices, uvs, indices }, first, count) {
+  const own = [], place = new Map();
+  vertices.forEach((v, i) => v >= first && v < first + count && place.set(i, own.push(i) - 1));
+  return {
+    vertices: Uint32Array.from(own, (i) => vertices[i] - first),
+    uvs: Float32Array.from({ length: 2 * own.length }, (_, k) => uvs[2 * own[k >> 1] + (k & 1)]),
+    indices: indices.filter((v) => place.has(v)).map((v) => place.get(v)),
+  };
 }
 
 // Of three corners a triangle; null for points and lines.

@@ -52,6 +52,9 @@ export interface Mesh {
   /** The corners of each polygon, at least 3; default: all faces are triangles. Arrays with 1 element
    * a corner then have them polygon after polygon. */
   polygonSizes?: Numbers;
+  /** 1 an instance: its linear density of texels relative to the others, > 0. The mesh is unwrapped once, and each
+   * instance gets a place for its uvs. */
+  instances?: Numbers;
 }
 
 export type Effort = "fast" | "standard" | "best";
@@ -125,6 +128,9 @@ export interface UnwrappedMesh {
   triangleChart: Uint32Array;
   /** With the option seams, 1 a corner of the given faces: 1 if the edge to the next corner is a seam. */
   seams?: Uint8Array;
+  /** Of a mesh with instances, whose uvs are 0..1 over a rectangle of its own: an instance has them at
+   * uv * scale + offset of its page. 1 an instance; scale and offset 2. */
+  instances?: { page: Uint32Array; scale: Float32Array; offset: Float32Array };
   /** Of polygons: 1 a corner, in the mesh's order, into vertices. */
   corners?: Uint32Array;
   /** Of polygons: 1 a triangle. */

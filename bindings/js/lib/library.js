@@ -27,7 +27,7 @@ export class Library {
     const list = (Array.isArray(meshes) ? meshes : [meshes]).map(tightMesh);
     return this.#run(options, (call) => {
       const atlas = call.create("atlas_create", "atlas_destroy");
-      for (const mesh of list) call.check("add_mesh", atlas, meshStruct(call, mesh), 0);
+      for (const mesh of list) addMesh(call, atlas, mesh);
       const values = optionValues("unwrap_options", options, ofCalls);
       const unwrapped = call.create("unwrap", "unwrapped_destroy", atlas, unwrapOptions(call, options.lightmap, values));
       return unwrapResult(call, atlas, unwrapped, list, options.seams);
@@ -146,6 +146,7 @@ export function tightMesh(mesh, number = 0) {
     seams: numbers(Uint8Array, mesh.seams, 1, name("seams")),
     triangleDensity: floats("triangleDensity", 1),
     polygonSizes: numbers(Uint32Array, mesh.polygonSizes, 1, name("polygonSizes")),
+    instances: floats("instances", 1),
     density: mesh.density ?? 1,
   };
   if (mesh.texcoordIndices != null) {
@@ -169,6 +170,12 @@ function checkLengths(mesh, name) {
       throw new BadInputError(name(`${array} has ${mesh[array].length} numbers instead of ${length}`));
     }
   }
+}
+
+function addMesh(call, atlas, mesh) {
+  const struct = meshStruct(call, mesh);
+  if (!mesh.instances) call.check("add_mesh", atlas, struct, 0);
+  else call.check("add_instances", atlas, struct, call.put(mesh.instances), mesh.instances.length, 0);
 }
 
 function meshStruct(call, mesh) {
@@ -202,6 +209,7 @@ function unwrapResult(call, atlas, unwrapped, list, withSeams) {
       triangleChart: call.take(Uint32Array, uvs.triangle_chart, uvs.triangle_count),
     };
     if (mesh.polygonSizes) Object.assign(result, polygonResult(call, unwrapped, i));
+    if (mesh.instances) result.instances = instancesOf(call, unwrapped, i);
     if (withSeams) result.seams = seamsOf(call, atlas, unwrapped, i, mesh.indices.length);
     return result;
   });
@@ -218,6 +226,14 @@ function polygonResult(call, unwrapped, mesh) {
       polygons.corner_count - 2 * polygons.polygon_count),
     cutPolygons: call.take(Uint32Array, polygons.cut_polygons, polygons.cut_count),
   };
+}
+
+// Arrays with one element, or two, an instance.
+function instancesOf(call, unwrapped, mesh) {
+  const { instances, instance_count } = call.ask("get_instances", "instances", unwrapped, mesh);
+  const words = call.take(Uint32Array, instances, 5 * instance_count), numbers = new Float32Array(words.buffer);
+  const pair = (at) => Float32Array.from({ length: 2 * instance_count }, (_, i) => numbers[5 * (i >> 1) + at + (i & 1)]);
+  return { page: Uint32Array.from({ length: instance_count }, (_, i) => words[5 * i]), scale: pair(1), offset: pair(3) };
 }
 
 function seamsOf(call, atlas, unwrapped, mesh, count) {

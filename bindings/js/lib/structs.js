@@ -32,6 +32,7 @@ export const structs = {
   mesh_uvs: struct(`size size vertex_count triangle_count; pointer vertices uvs indices triangle_page triangle_chart`),
   polygon_uvs: struct(`size size polygon_count corner_count; pointer corners triangle_polygon; size cut_count;
     pointer cut_polygons`),
+  instances: struct("size size instance_count; pointer instances"),
   charts: struct(`size size chart_count; pointer mesh page material triangle_count kept area stretch_l2 stretch_999
     stretch_max`),
   pack_options: struct(`size size; i32 page_width page_height; u32 max_pages; i32 allow_rotation padding border

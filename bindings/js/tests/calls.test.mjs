@@ -94,6 +94,21 @@ test("polygons stay whole, and each corner has a uv", () => {
   assert.equal(result.cutPolygons.length, 0);
 });
 
+test("instances are unwrapped once, and have places apart by density", () => {
+  const { meshes: [result, other], pages } = atlas.unwrap([{ ...mesh, instances: [1, 2, 1] }, box()], { pageSize: 1024 });
+  const { page, scale, offset } = result.instances;
+  assert.deepEqual([...page], [0, 0, 0]);
+  assert.ok(Math.abs(scale[2] / scale[0] - 2) < 0.05);
+  const places = [0, 1, 2].map((i) => [0, 1].map((k) => [offset[2 * i + k], offset[2 * i + k] + scale[2 * i + k]]));
+  for (const sides of places) assert.ok(sides.every(([low, high]) => low >= 0 && high <= 1));
+  const apart = (a, b) => [0, 1].some((k) => a[k][1] <= b[k][0] || b[k][1] <= a[k][0]);
+  assert.ok(apart(places[0], places[1]) && apart(places[0], places[2]) && apart(places[1], places[2]));
+  assert.equal(other.instances, undefined);
+  assert.equal(pages.length, 1);
+  assert.throws(() => atlas.unwrap({ ...mesh, instances: [1, 0] }), BadInputError);
+  assert.throws(() => atlas.unwrap({ ...mesh, instances: [] }), BadInputError);
+});
+
 test("progress rises to 1 in each stage, and an aborted signal ends the call", () => {
   const stages = new Map();
   atlas.unwrap(mesh, { onProgress: (stage, fraction) => stages.set(stage, fraction) });
@@ -148,12 +163,28 @@ test("wrong options are errors that name the option", () => {
 
 // The library with a smaller limit of memory: 384 pages of 64 KiB instead of 65536.
 function withLittleMemory() {
-  const wasm = readFileSync(`${folder}/libatlas.wasm`);
-  const place = wasm.indexOf(Buffer.from([5, 7, 1, 1])) + 4;  // section, its length, one memory, with a maximum
-  const most = wasm.indexOf(Buffer.from([0x80, 0x80, 4]), place);
-  assert.ok(place > 4 && most - place < 5);
-  wasm[most + 1] = 0x83;
-  wasm[most + 2] = 0;
+  const wasm = readFileSync(`${folder}/libatlas.wasm`), memorySection = 5;
+  let at = 8;
+  const number = () => {
+    let value = 0;
+    for (let shift = 0; ; shift += 7) {
+      value += (wasm[at] & 0x7f) * 2 ** shift;
+      if (wasm[at++] < 0x80) return value;
+    }
+  };
+  for (let section; (section = wasm[at++]) !== memorySection;) {
+    const length = number();
+    at += length;
+  }
+  number();
+  assert.deepEqual([...wasm.subarray(at, at + 2)], [1, 1]);  // one memory, with a limit
+  at += 2;
+  assert.ok(number() < 384);
+  const limit = at;
+  assert.equal(number(), 65536);
+  for (let place = limit; place < at; ++place) wasm[place] = 0x80;
+  wasm[limit + 1] |= 3;
+  wasm[at - 1] &= 0x7f;
   return wasm;
 }
 

@@ -18,7 +18,7 @@ test("the structs are those of atlas.h", () => {
     const body = header.match(new RegExp(`struct libatlas_${name} \\{([^}]*)\\}`))[1];
     const declared = [];
     for (const line of body.split(";").map((part) => part.trim()).filter(Boolean)) {
-      const [, type, names] = line.match(/^(?:const )?(\w+\*?) ([^]*)$/);
+      const [, type, names] = line.match(/^(?:const )?(\w+\*?)\s+([^]*)$/);
       for (const member of names.split(",").map((word) => word.trim())) {
         if (type === "libatlas_extent") declared.push(["page_width", "i32"], ["page_height", "i32"]);
         else declared.push([member, type.endsWith("*") ? "pointer" : types[type]]);
