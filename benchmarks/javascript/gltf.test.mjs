@@ -90,6 +90,15 @@ const files = {
   },
 };
 
+// Of triangles in uv.
+function areas(primitive, set) {
+  const uv = primitive.getAttribute(set).getArray(), indices = primitive.getIndices().getArray();
+  return Array.from({ length: indices.length / 3 }, (_, t) => {
+    const [a, b, c] = [0, 1, 2].map((k) => 2 * indices[3 * t + k]);
+    return ((uv[b] - uv[a]) * (uv[c + 1] - uv[a + 1]) - (uv[c] - uv[a]) * (uv[b + 1] - uv[a + 1])) / 2;
+  });
+}
+
 // What a primitive draws: the positions of its corners.
 function drawn(primitive) {
   const position = primitive.getAttribute("POSITION"), indices = primitive.getIndices()?.getArray();
@@ -108,6 +117,7 @@ for (const [name, make] of Object.entries(files)) {
     primitives(own).forEach((primitive, i) => {
       assert.deepEqual(drawn(primitive), drawn(old[i]));
       assert.ok(primitive.getAttribute(set).getArray().every((x) => x >= 0 && x <= 1));
+      assert.ok(areas(primitive, set).every((area) => area <= 0));  // clockwise, since v points down
       assert.equal(primitive.listTargets().length, old[i].listTargets().length);
       assert.deepEqual(primitive.listSemantics().sort(), primitives(rival)[i].listSemantics().sort());
     });
@@ -130,15 +140,7 @@ test("texels have one size in the scene", async () => {
   const { document } = files["several meshes and scales on one page"]();
   await document.transform(ours({ groupBy: "scene", library }));
   const [large, , small] = primitives(document);
-  const area = (primitive) => {
-    const uv = primitive.getAttribute("TEXCOORD_0").getArray(), indices = primitive.getIndices().getArray();
-    let sum = 0;
-    for (let i = 0; i < indices.length; i += 3) {
-      const [a, b, c] = [0, 1, 2].map((k) => 2 * indices[i + k]);
-      sum += Math.abs((uv[b] - uv[a]) * (uv[c + 1] - uv[a + 1]) - (uv[c] - uv[a]) * (uv[b + 1] - uv[a + 1])) / 2;
-    }
-    return sum;
-  };
+  const area = (primitive) => areas(primitive, "TEXCOORD_0").reduce((sum, x) => sum - x, 0);
   assert.ok(Math.abs(area(large) / area(small) - 9) < 0.3, `${area(large) / area(small)}`);
 });
 
