@@ -192,8 +192,14 @@ test("what memory does not hold is an error, after which the library works", asy
   const small = await load({ wasm: withLittleMemory() });
   for (let i = 0; i < 3; ++i) {
     assert.throws(() => small.unwrap(waves(300)), OutOfMemoryError);
-    assert.deepEqual(small.unwrap(box()), atlas.unwrap(box()));
+    assert.deepEqual(small.unwrap(waves(60)), atlas.unwrap(waves(60)));  // which little more than fits
   }
+});
+
+test("memory is used again", async () => {
+  const small = await load({ wasm: withLittleMemory() });
+  const rects = new Int32Array(40000).fill(3);
+  for (let i = 0; i < 150; ++i) small.packRects(rects, { preset: "fast" });
 });
 
 test("rectangles are packed", () => {

@@ -107,6 +107,10 @@ test("a signal ends a call in a worker at once, and later ones run", async () =>
     await assert.rejects(call, { name: "AbortError" });
     assert.ok(performance.now() - asked < 100);
     assert.equal((await next).meshes.length, 1);
+    const before = process.cpuUsage();
+    await new Promise((done) => setTimeout(done, 300));
+    const { user, system } = process.cpuUsage(before);
+    assert.ok(user + system < 100000, `something goes on: ${user + system} us`);
   }
   await assert.rejects(worker.unwrap(big, { onProgress: () => { throw new TypeError("mine"); } }), /mine/);
   const running = worker.unwrap(big);
