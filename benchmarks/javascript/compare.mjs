@@ -7,7 +7,7 @@ import { readFileSync } from "node:fs";
 import { basename } from "node:path";
 import { fileURLToPath, pathToFileURL } from "node:url";
 
-import { fans, readObj } from "../../bindings/js/lib/obj.js";
+import { fans, readObj } from "../../bindings/js/playground/obj.js";
 
 const limit = 300;
 const [, self, folder, ...rest] = process.argv;

@@ -1,6 +1,6 @@
 // The page: opens files, unwraps them in a worker whenever an option changes, and shows the result.
 import { compile } from "../lib/compile.js";
-import { fans, readObj } from "../lib/obj.js";
+import { fans, readObj } from "./obj.js";
 import { WorkerLibrary } from "../lib/worker-library.js";
 import { fileOfMesh, primitivesOf, readGlb, withResults } from "./glb.js";
 import { sampleMesh } from "./sample.js";

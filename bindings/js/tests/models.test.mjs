@@ -4,7 +4,7 @@ import { execFileSync } from "node:child_process";
 import { readFileSync, readdirSync } from "node:fs";
 import { test } from "node:test";
 
-import { fans, readObj } from "../lib/obj.js";
+import { fans, readObj } from "../playground/obj.js";
 import { compared, native } from "./native.mjs";
 import { inPackage, libatlas, waves } from "./support.mjs";
 

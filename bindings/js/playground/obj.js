@@ -1,5 +1,4 @@
-// Reads what an OBJ file says about one mesh: positions, given uvs and polygons. Not more: the playground and the tests
-// use it.
+// Reads what an OBJ file says about one mesh: positions, given uvs and polygons. The tests and the benchmark use it, too.
 export function readObj(text) {
   const positions = [], texcoords = [], indices = [], texcoordIndices = [], polygonSizes = [];
   const index = (word, count) => {
