@@ -3,7 +3,7 @@ import assert from "node:assert/strict";
 import { cpSync, existsSync, mkdirSync, mkdtempSync, readFileSync, rmSync, symlinkSync, writeFileSync } from "node:fs";
 import { tmpdir } from "node:os";
 import { join } from "node:path";
-import { test } from "node:test";
+import { after, test } from "node:test";
 import { fileURLToPath, pathToFileURL } from "node:url";
 
 import { folder, libatlas, waves } from "./support.mjs";
@@ -38,7 +38,7 @@ if (existsSync(others)) {
   await new NodeIO().write(globalThis.path, document);
 }
 
-test.after(() => rmSync(place, { recursive: true }));
+after(() => rmSync(place, { recursive: true }));
 assert.ok(snippets.length >= 7);
 snippets.forEach((code, i) => {
   const skip = code.includes("@gltf-transform") && !existsSync(others) && "npm ci has not run in benchmarks/javascript";
