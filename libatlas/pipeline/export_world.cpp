@@ -59,6 +59,7 @@ class Export {
          const std::function<void(const StageReport&)>& stage_done, const Context& context)
       : scene_(loaded.scene),
         view_(loaded.view),
+        further_views_(loaded.further_views),
         options_(planned_options(loaded.scene, options)),
         context_(context),
         plan_(make_plan(scene_, options_)),
@@ -428,7 +429,8 @@ class Export {
                        sampler_ ? &*sampler_ : nullptr,
                        image_sources_,
                        error_,
-                       view_};
+                       view_,
+                       further_views_};
     Result<StageOutcome> written = write_export(std::move(made), files_, report_, context);
     if (!written.ok()) return written.status();
     record_.finish(std::move(*written));
@@ -439,6 +441,7 @@ class Export {
 
   const Scene& scene_;
   const std::optional<FileView> view_;
+  const std::vector<FileView> further_views_;
   const ExportOptions options_;
   const Context& context_;
   const ExportPlan plan_;

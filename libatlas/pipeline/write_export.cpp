@@ -57,15 +57,14 @@ std::vector<std::uint8_t> shown_light(const ExportToWrite& made, const ToneMappi
   return shown;
 }
 
-// Returns the view that the scene's file begins with. Nothing if it looks straight up or down: such
-// a view has no heading, so viewers could not keep upright.
-std::optional<Viewpoint> own_viewpoint(const ExportToWrite& made) {
-  if (!made.view) return std::nullopt;
+// Returns a view of the scene's file. Nothing if it looks straight up or down: such a view has no
+// heading, so viewers could not keep upright.
+std::optional<Viewpoint> own_viewpoint(const ExportToWrite& made, const FileView& own) {
   constexpr double kUpright = 0.9999;
-  const glm::dvec3 ahead = glm::normalize(to_glm(made.view->direction));
+  const glm::dvec3 ahead = glm::normalize(to_glm(own.direction));
   if (std::abs(made.options.up == Up::z ? ahead.z : ahead.y) > kUpright) return std::nullopt;
   const Scene& scene = made.scene;
-  const glm::dvec3 eye = to_glm(made.view->position) - to_glm(scene.origin);
+  const glm::dvec3 eye = to_glm(own.position) - to_glm(scene.origin);
   Bounds<glm::dvec3> box, point;
   for (const std::uint32_t i : scene.indices) box.add(to_dvec(scene.positions[i]));
   point.add(eye);
@@ -77,7 +76,8 @@ std::optional<Viewpoint> own_viewpoint(const ExportToWrite& made) {
 }
 
 Viewpoint viewpoint_of(const ExportToWrite& made, const ToneMapping& tone, const Context& context) {
-  if (const std::optional<Viewpoint> own = own_viewpoint(made)) return *own;
+  if (made.view)
+    if (const std::optional<Viewpoint> own = own_viewpoint(made, *made.view)) return *own;
   const std::vector<std::uint8_t> light =
       made.baked ? shown_light(made, tone, context) : std::vector<std::uint8_t>();
   ViewpointOptions eye;
@@ -157,6 +157,9 @@ World make_world(ExportToWrite& made, ExportReport& report, const Context& conte
   }
   if (holds_viewpoint(options.target)) {
     world.viewpoint = viewpoint_of(made, report.tone, context);
+    for (const FileView& further : made.further_views)
+      if (const std::optional<Viewpoint> view = own_viewpoint(made, further))
+        world.further_viewpoints.push_back({further.name, *view});
   }
   for (std::size_t p = 0; p < made.image_sources.size(); ++p) {
     world.pages[p].image = report.pages[p].image;

@@ -35,6 +35,7 @@ struct ExportToWrite {
   std::span<const std::filesystem::path> image_sources = {};
   std::span<const FidelityMeter::Cells> error = {};  // one per page, or none
   std::optional<FileView> view = {};  // where a viewer of the scene's own file begins
+  std::span<const FileView> further_views = {};
 };
 
 // Writes the world and commits `files`, which hold the pages' images. Adds to the report what was
