@@ -191,8 +191,9 @@ Result<WorldFile> write_gltf(const World& world, const std::filesystem::path& pa
 
 // Writes a page of HTML that shows the world in a browser by itself: geometry, pages and viewer are
 // in this one file, which loads nothing. World::scene is refused (bad_option). Positions are
-// rounded to a 64th of a millimetre where the viewpoint is inside, else to a 65535th of the box; uvs to
-// a 32nd of a texel of 2048. docs/formats.md describes the data, which scripts can read as well.
+// rounded to a 64th of a millimetre where the viewpoint is inside, else to a 65535th of the box;
+// uvs to a 32nd of a texel of 2048. docs/formats.md describes the data, which scripts can read as
+// well.
 Result<WorldFile> write_html(const World& world, const std::filesystem::path& path,
                              AtomicFiles& files, const Context& context);
 

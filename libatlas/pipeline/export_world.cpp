@@ -419,18 +419,12 @@ class Export {
   Status write() {
     const Context& context = record_.begin("writing");
     if (Status s = draw(); !s.ok()) return s;
-    ExportToWrite made{scene_,
-                       options_,
-                       charts_,
-                       layout_,
-                       finished_->mesh,
-                       std::move(finished_->uvs),
-                       plan_.bake,
-                       sampler_ ? &*sampler_ : nullptr,
-                       image_sources_,
-                       error_,
-                       view_,
-                       further_views_};
+    ExportToWrite made{scene_,          options_,
+                       charts_,         layout_,
+                       finished_->mesh, std::move(finished_->uvs),
+                       plan_.bake,      sampler_ ? &*sampler_ : nullptr,
+                       image_sources_,  error_,
+                       view_,           further_views_};
     Result<StageOutcome> written = write_export(std::move(made), files_, report_, context);
     if (!written.ok()) return written.status();
     record_.finish(std::move(*written));

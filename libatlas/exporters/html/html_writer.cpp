@@ -32,9 +32,9 @@ namespace {
 
 constexpr int kFormat = 1;
 constexpr std::string_view kLightType = "application/x-atlas-light";  // of write_light_page()
-// Positions are whole steps: of a 65535th of the box, and where the visitor stands among the surfaces
-// of a 64th of a millimetre. Steps of 0.1 mm move the outlines of lamps over so many pixels that these
-// are four fifths of a picture's error (5 dB), and save 2 % of the bytes.
+// Positions are whole steps: of a 65535th of the box, and where the visitor stands among the
+// surfaces of a 64th of a millimetre. Steps of 0.1 mm move the outlines of lamps over so many
+// pixels that these are four fifths of a picture's error (5 dB), and save 2 % of the bytes.
 constexpr double kStepMetres = 1.0 / 65536, kStepsOfBox = 65535, kMostSteps = 1 << 24;
 constexpr std::uint32_t kUvSteps = 65535;
 // They need each other in this order.

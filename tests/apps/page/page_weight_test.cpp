@@ -17,9 +17,9 @@ namespace {
 TEST(PageWeight, ACabinOfAHundredThousandTrianglesIsSmallAndFaithful) {
   const TempFolder folder;
   const std::string scene = folder / "cabin.obj", page = folder / "cabin.html";
-  const std::string made = output_of(
-      fmt::format("'{}' -n 100000 -q -o '{}' && '{}' '{}' -o '{}' --up z -q && echo done",
-                  ATLAS_MAKE_CABIN, scene, ATLAS_EXPORT, scene, page));
+  const std::string made =
+      output_of(fmt::format("'{}' -n 100000 -q -o '{}' && '{}' '{}' -o '{}' --up z -q && echo done",
+                            ATLAS_MAKE_CABIN, scene, ATLAS_EXPORT, scene, page));
   ASSERT_EQ(made, "done\n");
   EXPECT_LT(std::filesystem::file_size(page), 5'000'000u);
   const auto lit = read_world(scene), world = read_world(page);
