@@ -9,7 +9,7 @@
 
 #include "apps/common/options.h"
 #include "apps/common/program.h"
-#include "libatlas/core/parse_number.h"
+#include "libatlas/files/parse_number.h"
 
 namespace atlas::app {
 namespace {

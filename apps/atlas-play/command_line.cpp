@@ -11,7 +11,7 @@
 #include "apps/common/options.h"
 #include "apps/common/program.h"
 #include "apps/common/quantity.h"
-#include "libatlas/core/parse_number.h"
+#include "libatlas/files/parse_number.h"
 #include "libatlas/view/start_camera.h"
 
 namespace atlas::app {

@@ -9,8 +9,8 @@
 #include <cstdio>
 #include <cstring>
 
-#include "libatlas/core/links.h"
 #include "libatlas/files/leftovers.h"
+#include "libatlas/files/links.h"
 #include "libatlas/files/replace_files.h"
 #include "libatlas/files/write_error.h"
 

@@ -13,6 +13,7 @@ ExportJob::ExportJob(const LoadedScene& loaded, const ExportOptions& asked,
                      const Context& given)
     : scene(loaded.scene),
       view(loaded.view),
+      further_views(loaded.further_views),
       options(planned_options(loaded.scene, asked)),
       context(given),
       plan(make_plan(scene, options)),

@@ -28,8 +28,9 @@ struct ExportJob {
             const std::function<void(const StageReport&)>& stage_done, const Context& context);
 
   const Scene& scene;
-  const std::optional<FileView> view;  // where a viewer of the scene's own file begins
-  const ExportOptions options;         // those that hold for the scene (planned_options)
+  const std::optional<FileView> view;          // where a viewer of the scene's own file begins
+  const std::vector<FileView>& further_views;  // of the scene's own file
+  const ExportOptions options;                 // those that hold for the scene (planned_options)
   const Context& context;
   const ExportPlan plan;
   AtomicFiles files;

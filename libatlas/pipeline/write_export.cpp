@@ -60,15 +60,14 @@ std::vector<std::uint8_t> shown_light(const Scene& scene, const SceneLight& ligh
   return shown;
 }
 
-// Returns the view that the scene's file begins with. Nothing if it looks straight up or down: such
-// a view has no heading, so viewers could not keep upright.
-std::optional<Viewpoint> own_viewpoint(const ExportJob& job) {
-  if (!job.view) return std::nullopt;
+// Returns a view of the scene's file. Nothing if it looks straight up or down: such a view has no
+// heading, so viewers could not keep upright.
+std::optional<Viewpoint> own_viewpoint(const ExportJob& job, const FileView& own) {
   constexpr double kUpright = 0.9999;
-  const glm::dvec3 ahead = glm::normalize(to_glm(job.view->direction));
+  const glm::dvec3 ahead = glm::normalize(to_glm(own.direction));
   if (std::abs(job.options.up == Up::z ? ahead.z : ahead.y) > kUpright) return std::nullopt;
   const Scene& scene = job.scene;
-  const glm::dvec3 eye = to_glm(job.view->position) - to_glm(scene.origin);
+  const glm::dvec3 eye = to_glm(own.position) - to_glm(scene.origin);
   Bounds<glm::dvec3> box, point;
   for (const std::uint32_t i : scene.indices) box.add(to_dvec(scene.positions[i]));
   point.add(eye);
@@ -80,7 +79,8 @@ std::optional<Viewpoint> own_viewpoint(const ExportJob& job) {
 }
 
 Viewpoint viewpoint_of(const ExportJob& job, const SceneLight* light, const Context& context) {
-  if (const std::optional<Viewpoint> own = own_viewpoint(job)) return *own;
+  if (job.view)
+    if (const std::optional<Viewpoint> own = own_viewpoint(job, *job.view)) return *own;
   const std::vector<std::uint8_t> shown =
       light ? shown_light(job.scene, *light, context) : std::vector<std::uint8_t>();
   ViewpointOptions eye;
@@ -185,7 +185,12 @@ World make_world(ExportJob& job, ExportToWrite& made, const Context& context) {
     if (made.light) add_lightmap(job, made, world);
     return world;
   }
-  if (holds_viewpoint(options.target)) world.viewpoint = viewpoint_of(job, made.light, context);
+  if (holds_viewpoint(options.target)) {
+    world.viewpoint = viewpoint_of(job, made.light, context);
+    for (const FileView& further : job.further_views)
+      if (const std::optional<Viewpoint> view = own_viewpoint(job, further))
+        world.further_viewpoints.push_back({further.name, *view});
+  }
   add_pages(job, made.baked, world);
   if (made.light && options.linear) world.light = light_of(job, charts);
   return world;

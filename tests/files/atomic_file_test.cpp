@@ -12,8 +12,8 @@
 #include <thread>
 #include <utility>
 
-#include "libatlas/core/links.h"
 #include "libatlas/files/leftovers.h"
+#include "libatlas/files/links.h"
 #include "tests/core/no_root.h"
 #include "tests/support/full_disk.h"
 #include "tests/support/temp_folder.h"

@@ -1,6 +1,6 @@
 // A program for libFuzzer, of the target FUZZ_TARGET(bytes). Its limits are on CPU time, since
-// libFuzzer's own are on the clock's, which a busy machine lets run out: an input may take 10 s, and
-// after the seconds that LIBATLAS_FUZZ_SECONDS names (if set) the run ends as on SIGUSR1.
+// libFuzzer's own are on the clock's, which a busy machine lets run out: an input may take 10 s,
+// and after the seconds that LIBATLAS_FUZZ_SECONDS names (if set) the run ends as on SIGUSR1.
 #include <sys/time.h>
 
 #include <algorithm>

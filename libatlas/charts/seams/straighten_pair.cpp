@@ -23,8 +23,8 @@ constexpr double kLongest = 1 << 16;  // the most steps of an edge, so that sums
 constexpr int kHubTriangles = 128;
 constexpr double kNeedle = 16;
 
-// Where more triangles meet, no cut moves one of them: each would walk around all others. A flat fan
-// of so many consists of needles.
+// Where more triangles meet, no cut moves one of them: each would walk around all others. A flat
+// fan of so many consists of needles.
 constexpr int kMostAround = 1024;
 
 class PairStraightener {

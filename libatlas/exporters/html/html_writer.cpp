@@ -218,10 +218,18 @@ json world_json(const World& world) {
                  {"inside", view.inside},
                  {"visitor", visitor_json(world)},
                  {"pages", std::move(pages)}};
-  const glm::dvec3 ahead = glm::normalize(to_glm(view.direction));
-  result["start"] = {{"position", list_of(in_page(world, to_glm(view.position)))},
-                     {"direction", list_of(world.up == Up::z ? z_up_to_y_up(ahead) : ahead)},
-                     {"fov", view.fov}};
+  const auto view_json = [&](const Viewpoint& v) {
+    const glm::dvec3 ahead = glm::normalize(to_glm(v.direction));
+    return json{{"position", list_of(in_page(world, to_glm(v.position)))},
+                {"direction", list_of(world.up == Up::z ? z_up_to_y_up(ahead) : ahead)},
+                {"fov", v.fov}};
+  };
+  result["start"] = view_json(view);
+  json& further = result["viewpoints"] = json::array();
+  for (const NamedViewpoint& v : world.further_viewpoints) {
+    further.push_back(view_json(v.viewpoint));
+    further.back()["name"] = v.name;
+  }
   if (world.light) result["light"] = light_json(*world.light);
   return result;
 }

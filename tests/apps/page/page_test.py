@@ -50,7 +50,8 @@ def points_of(file, count):
 
 
 def light_of(place, front):
-    """Returns the room's illuminance and reflectance at a place on the face with this front."""
+    """Returns the room's illuminance and reflectance at a place on the face with this front, and what
+    a mesh may have there whose squares are cut along either diagonal."""
     best = None
     for corner, u, v, material in room.faces():
         normal = room.cross(u, v)
@@ -62,7 +63,8 @@ def light_of(place, front):
                      for side in (u, v))
         agrees = sum(x * n for x, n in zip(front, normal)) > 0
         if within and agrees and (best is None or off < best[0]):
-            best = (off, room.illuminance(place, normal), getattr(room, material.upper()))
+            best = (off, room.illuminance(place, normal), getattr(room, material.upper()),
+                    room.interpolated(place, corner, u, v, normal))
     return best[1:]
 
 
@@ -83,7 +85,7 @@ class TheFile(unittest.TestCase):
         white = json.load(open(self.path / 'report.json'))['light']['white']
         square = 0
         for place, front, page, uv in points_of(file, POINTS):
-            light, reflectance = light_of(place, front)
+            light, reflectance, _ = light_of(place, front)
             want = [encode(min(1, light * r / white)) for r in reflectance]
             got = file.images[page].at(*uv)
             square += sum((w - g / 255) ** 2 for w, g in zip(want, got)) / 3
@@ -92,13 +94,22 @@ class TheFile(unittest.TestCase):
 
     def test_pages_of_light_hold_it(self):
         file = page_file.PageFile(export(self.path, '--linear'))
-        errors = []
+        report = json.load(open(self.path / 'report.json'))
+        white = report['light']['white']
+        shown = lambda colour: encode(min(1, luma(colour) / white))
+        errors, reported = [], []
         for place, front, page, uv in points_of(file, POINTS):
-            light, reflectance = light_of(place, front)
-            want = luma([light * r for r in reflectance])
-            errors.append(abs(luma(file.images[page].at(*uv)) / want - 1))
+            light, reflectance, inputs = light_of(place, front)
+            got = file.images[page].at(*uv)
+            errors.append(abs(luma(got) / luma([light * r for r in reflectance]) - 1))
+            reported.append(min(abs(shown(got) - shown([i * r for r in reflectance])) for i in inputs))
         errors.sort()
+        reported.sort()
         self.assertLess(errors[int(0.95 * POINTS)], 0.03)
+        # The luminance is as near the input's as the report says, and the step of its code.
+        error = report['error']
+        self.assertLess(reported[int(0.95 * POINTS)], 1.2 * error['p95'] + 0.0005)
+        self.assertLess(reported[-1], 1.2 * error['max'] + 0.0005)
         self.assertEqual(list(self.path.glob('*.light')), [])
 
 
@@ -180,12 +191,32 @@ class InTheBrowser(unittest.TestCase):
         off = []
         for hit in hits:
             image = file.images[hit['page']].at(hit['u'], hit['v'])
-            light, reflectance = light_of(hit['position'], hit['normal'])
+            light, reflectance, _ = light_of(hit['position'], hit['normal'])
             want = luma([c / r for c, r in zip(image, reflectance)])
             self.assertLess(abs(hit['value'] / want - 1), 0.02)
             off.append(abs(hit['value'] / light - 1))
         self.assertLess(sorted(off)[int(0.95 * POINTS)], 0.03)
         self.expect_silence(self.linear)
+
+    def test_offers_the_views_of_the_file(self):
+        folder = pathlib.Path(self.folder.name) / 'views'
+        folder.mkdir()
+        world = folder / 'views.wrl'
+        subprocess.run([EXPORT, room.write(folder), '-o', world, '--charts-only', '-q'], check=True)
+        with open(world, 'a') as file:
+            file.write('Viewpoint { position 1 1.2 4 orientation 0 1 0 1.5707963 description "Corner" }\n'
+                       'Viewpoint { position 2 1.6 3 }\n')
+        target = folder / 'views.html'
+        subprocess.run([EXPORT, world, '-o', target, '-q'], check=True)
+        self.open(target)
+        places = self.page.value("[...document.querySelectorAll('#places option')].map((o) => o.text)")
+        self.assertEqual(places[2:4], ['Corner', 'Viewpoint 3'])
+        self.page.value("document.getElementById('places').value = '1'; "
+                        "document.getElementById('places').dispatchEvent(new Event('change'))")
+        eye, ahead = self.page.value('[libatlas.viewer.motion.eye, libatlas.viewer.motion.ahead()]')
+        for got, want in zip(eye + ahead, (1, 1.2, 4, -1, 0, 0)):
+            self.assertAlmostEqual(got, want, delta=1e-3)
+        self.expect_silence(target)
 
     def test_exposure_and_false_colours_change_the_picture(self):
         self.open(self.linear)

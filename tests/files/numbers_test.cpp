@@ -17,12 +17,12 @@
 #include "libatlas/core/drop_rounding.h"
 #include "libatlas/core/image.h"
 #include "libatlas/core/luma.h"
-#include "libatlas/core/parse_number.h"
 #include "libatlas/core/percentile.h"
 #include "libatlas/core/random.h"
 #include "libatlas/core/text_buffer.h"
 #include "libatlas/core/text_hash.h"
 #include "libatlas/files/file_extension.h"
+#include "libatlas/files/parse_number.h"
 #include "libatlas/files/write_error.h"
 
 namespace atlas {

@@ -1,4 +1,4 @@
-#include "libatlas/core/links.h"
+#include "libatlas/files/links.h"
 
 #include <system_error>
 

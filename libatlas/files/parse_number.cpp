@@ -1,4 +1,4 @@
-#include "libatlas/core/parse_number.h"
+#include "libatlas/files/parse_number.h"
 
 #include <algorithm>
 #include <charconv>
