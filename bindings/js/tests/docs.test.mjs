@@ -1,4 +1,4 @@
-// The code in docs/javascript.md runs.
+// The code in docs/javascript.md and of the READMEs runs.
 import assert from "node:assert/strict";
 import { cpSync, existsSync, mkdirSync, mkdtempSync, readFileSync, rmSync, symlinkSync, writeFileSync } from "node:fs";
 import { tmpdir } from "node:os";
@@ -10,7 +10,7 @@ import { folder, libatlas, waves } from "./support.mjs";
 
 const repository = fileURLToPath(new URL("../../..", import.meta.url));
 const others = join(repository, "benchmarks/javascript/node_modules");
-const text = readFileSync(join(repository, "docs/javascript.md"), "utf8") + readFileSync(`${folder}/README.md`, "utf8");
+const text = [join(repository, "docs/javascript.md"), join(repository, "README.md"), `${folder}/README.md`].map((page) => readFileSync(page, "utf8")).join("\n");
 const snippets = [...text.matchAll(/^```js\n([^]*?)^```$/gm)].map(([, code]) => code);
 
 // What the snippets take for granted.
@@ -39,7 +39,7 @@ if (existsSync(others)) {
 }
 
 after(() => rmSync(place, { recursive: true }));
-assert.ok(snippets.length >= 7);
+assert.ok(snippets.length >= 8);
 snippets.forEach((code, i) => {
   const skip = code.includes("@gltf-transform") && !existsSync(others) && "npm ci has not run in benchmarks/javascript";
   test(`snippet ${i + 1}: ${code.split("\n")[0]}`, { skip }, async () => {

@@ -11,7 +11,7 @@ import pytest
 from meshes import box, torus
 
 ROOT = Path(__file__).parents[3]
-PAGES = [ROOT / "docs/python.md", ROOT / "bindings/python/README.md"]
+PAGES = [ROOT / "docs/python.md", ROOT / "bindings/python/README.md", ROOT / "README.md"]
 pytestmark = pytest.mark.skipif(not PAGES[0].exists(), reason="needs the repository")
 
 
@@ -19,7 +19,7 @@ def blocks(page):
     return re.findall(r"^```python\n(.*?)^```", page.read_text(), re.M | re.S)
 
 
-@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.stem)
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: f"{page.parent.name}-{page.stem}")
 def test_code_of_the_documents(page, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     vertices, _ = torus()
