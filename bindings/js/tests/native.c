@@ -1,7 +1,8 @@
 // Unwraps a mesh with the native library, for comparisons with WebAssembly.
-// Usage: native MESH RESULT: MESH holds the numbers of positions and indices (uint32), the positions (3 floats each) and
-// the indices; RESULT gets the numbers of charts, vertices and triangles, the vertices, uvs and indices, and the charts
-// of the triangles. Prints the CPU seconds of the second of two calls, on one thread.
+// Usage: native MESH RESULT: MESH holds the numbers of positions and indices (uint32), the
+// positions (3 floats each) and the indices; RESULT gets the numbers of charts, vertices and
+// triangles, the vertices, uvs and indices, and the charts of the triangles. Prints the CPU seconds
+// of the second of two calls, on one thread.
 #include <stdio.h>
 #include <stdlib.h>
 #include <time.h>
@@ -14,7 +15,8 @@ static void check(libatlas_context* context, libatlas_status status) {
   exit(1);
 }
 
-static double unwrap(libatlas_context* context, const libatlas_mesh* mesh, libatlas_unwrapped** result) {
+static double unwrap(libatlas_context* context, const libatlas_mesh* mesh,
+                     libatlas_unwrapped** result) {
   const clock_t begun = clock();
   libatlas_atlas* atlas;
   check(context, libatlas_atlas_create(context, &atlas));
@@ -31,7 +33,9 @@ int main(int count, char** arguments) {
   if (!in || fread(counts, 4, 2, in) != 2) return 2;
   float* positions = malloc(12 * (size_t)counts[0]);
   uint32_t* indices = malloc(4 * (size_t)counts[1]);
-  if (fread(positions, 12, counts[0], in) != counts[0] || fread(indices, 4, counts[1], in) != counts[1]) return 2;
+  if (fread(positions, 12, counts[0], in) != counts[0] ||
+      fread(indices, 4, counts[1], in) != counts[1])
+    return 2;
   fclose(in);
 
   libatlas_mesh mesh;
