@@ -5,6 +5,7 @@ import json
 import math
 import pathlib
 import random
+import re
 import subprocess
 import sys
 import tempfile
@@ -91,6 +92,22 @@ class TheFile(unittest.TestCase):
             square += sum((w - g / 255) ** 2 for w, g in zip(want, got)) / 3
         self.assertGreater(-10 * math.log10(square / POINTS), 40)
         self.assertEqual(list(self.path.glob('*.png')), [])  # they are in the page
+
+    def test_a_scan_becomes_a_page_as_the_documents_say(self):
+        text = (pathlib.Path(__file__).parents[3] / 'docs/formats.md').read_text()
+        command = re.search(r'^build/apps/atlas-export/atlas-export (scan.ply .*)$', text, re.M)[1]
+        grey, corners = (40, 130, 220), ((0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0))
+        with open(self.path / 'scan.ply', 'w') as ply:
+            ply.write('ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\n'
+                      'property float z\nproperty uchar red\nproperty uchar green\nproperty uchar blue\n'
+                      'element face 2\nproperty list uchar int vertex_indices\nend_header\n')
+            ply.write(''.join(f'{x} {y} {z} {grey[0]} {grey[1]} {grey[2]}\n' for x, y, z in corners))
+            ply.write('3 0 1 2\n3 0 2 3\n')
+        subprocess.run([EXPORT, *command.split(), *PNG, '-q'], cwd=self.path, check=True)
+        file = page_file.PageFile(self.path / 'scan.html')
+        for _, _, page, uv in points_of(file, 50):
+            for got, want in zip(file.images[page].at(*uv), grey):
+                self.assertLess(abs(got - want), 1.5)
 
     def test_pages_of_light_hold_it(self):
         file = page_file.PageFile(export(self.path, '--linear'))

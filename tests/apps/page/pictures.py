@@ -24,13 +24,13 @@ def measure_floor(page):
     page.value("libatlas.viewer.motion.setView([0.35, 1.6, 4.7], [0.62, -0.28, -1])")
     page.value('libatlas.viewer.measuring.active = true; libatlas.viewer.refresh()')
     page.settle()
-    corners = (330, 640), (860, 730)
+    corners = (330, 640), (640, 640)
     page.mouse('Moved', *corners[0], held=False)
     page.mouse('Pressed', *corners[0])
-    page.mouse('Moved', 600, 680)
+    page.mouse('Moved', 500, 650)
     page.mouse('Moved', *corners[1])
     page.mouse('Released', *corners[1])
-    page.mouse('Moved', 560, 690, held=False)
+    page.mouse('Moved', 480, 660, held=False)
 
 
 def main(program, cabin, folder):
