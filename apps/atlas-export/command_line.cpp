@@ -148,10 +148,10 @@ void add_texture_options(CLI::App& app, ExportOptions& options, RawText& raw) {
          "parts of a chart kept apart")
       ->check(not_negative());
   app.add_option(
-      "--texel", raw.texel,
-      "Length of a texel on the real surface, e.g. 5mm, without a unit metres; default: "
-      "what the pages can hold, within 1 to 10 mm, and finer for fine scans; uvs without "
-      "light get a page as large as it needs")
+         "--texel", raw.texel,
+         "Length of a texel on the real surface, e.g. 5mm, without a unit metres; default: "
+         "what the pages can hold, within 1 to 10 mm, and finer for fine scans; uvs without "
+         "light get a page as large as it needs")
       ->excludes("--lightmap-options");
   add_off_flag(app, "--ignore-texture-density", options.follow_textures,
                "Do not refine where the diffuse texture is finer than --texel");

@@ -3,8 +3,8 @@
 // only.
 #pragma once
 
-#include "libatlas/core/wide_vectors.h"
 #include "libatlas/core/lanes.h"
+#include "libatlas/core/wide_vectors.h"
 
 // The warning is about how functions pass such vectors, which does not matter for inlined
 // functions.
