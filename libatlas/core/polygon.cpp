@@ -11,6 +11,7 @@
 #include "libatlas/core/glm_bridge.h"
 #include "libatlas/core/half_edge.h"
 #include "libatlas/core/no_index.h"
+#include "libatlas/core/portable_math.h"
 #include "libatlas/core/predicates.h"
 
 namespace atlas {
@@ -52,7 +53,7 @@ constexpr double kStraightness = 1.0 / (1 << 22);
 // Returns twice the area that a triangle needs to be higher than `height` over its longest edge.
 double least_area(const Vec2d& a, const Vec2d& b, const Vec2d& c, double height) {
   const auto length = [](const Vec2d& p, const Vec2d& q) {
-    return std::hypot(q.x - p.x, q.y - p.y);
+    return portable::hypot(q.x - p.x, q.y - p.y);
   };
   return height * std::max({length(a, b), length(b, c), length(c, a)});
 }

@@ -311,7 +311,9 @@ TEST(BrokenOptions, OfExportsAreRefused) {
        {"atlas_size", [](O& o) { o.atlas_size = -1; }},
        {"plain_pages", [](O& o) { o.plain_pages = 0; }},
        {"udim", [](O& o) { o.udim = true; }},
+       {"polygons", [](O& o) { o.polygons = true; }},
        {"plain_mip_levels", [](O& o) { o.plain_mip_levels = -1; }},
+       {"plain_padding", [](O& o) { o.plain_padding = 65; }},
        {"texel_metres", [](O& o) { o.texel_metres = kNan; }},
        {"threshold", [](O& o) { o.threshold = kNan; }},
        {"min_side", [](O& o) { o.min_side = 0; }},
@@ -331,11 +333,12 @@ TEST(BrokenOptions, OfExportsAreRefused) {
        {"png_compression", [](O& o) { o.png_compression = 10; }},
        {"keep_scene", [](O& o) { o.keep_scene = true; }},
        {"lightmap_pages", [](O& o) { o.lightmap_pages = 0; }},
+       {"mesh_uvs", [](O& o) { beyond(o.mesh_uvs); }},
        {"uv_set", [](O& o) { o.uv_set = 8; }},
        {"false_colour", [](O& o) { o.false_colour = "a.jpg"; }}},
-      {"larger_plain_page", "square_plain_page", "follow_textures", "split_at_light",
-       "more_mip_levels", "outlines", "simplify", "exr", "charts_only", "colours_are_light",
-       "extra_files", "durable", "report_pictures", "measure_error"}};
+      {"larger_plain_page", "square_plain_page", "plain_part_gaps", "follow_textures",
+       "split_at_light", "more_mip_levels", "outlines", "simplify", "exr", "charts_only",
+       "colours_are_light", "extra_files", "durable", "report_pictures", "measure_error"}};
   O good;
   good.target = "a.wrl";
   expect_each_is_refused(

@@ -67,6 +67,26 @@ TEST(ExportOptions, OfCharts) {
   EXPECT_TRUE(parsed({"--keep-scene"}).options.keep_scene);
 }
 
+TEST(ExportOptions, OfPolygonsInstancesAndLightmaps) {
+  EXPECT_TRUE(parsed({"--polygons"}).options.polygons);
+  EXPECT_EQ(parsed({"--keep-scene"}).options.mesh_uvs, MeshUvs::places);
+  EXPECT_EQ(parsed({"--keep-scene", "--instances", "uvs"}).options.mesh_uvs, MeshUvs::places);
+  EXPECT_EQ(parsed({"--keep-scene", "--instances", "extras"}).options.mesh_uvs, MeshUvs::instances);
+  EXPECT_EQ(parsed({"--keep-scene", "--each"}).options.mesh_uvs, MeshUvs::meshes);
+  for (const double texels : {0.0, 20.0}) {
+    ExportOptions expected;
+    use_lightmap_options(texels, expected);
+    const ExportOptions o = parsed({"--lightmap-options", texels > 0 ? "20" : "0"}).options;
+    EXPECT_EQ(o.square_plain_page, expected.square_plain_page);
+    EXPECT_EQ(o.plain_mip_levels, expected.plain_mip_levels);
+    EXPECT_EQ(o.plain_padding, expected.plain_padding);
+    EXPECT_EQ(o.plain_part_gaps, expected.plain_part_gaps);
+    EXPECT_EQ(o.larger_plain_page, expected.larger_plain_page);
+    EXPECT_EQ(o.texel_metres, expected.texel_metres);
+    EXPECT_EQ(o.plain_pages, 1u);
+  }
+}
+
 // Plain pages are as many as asked for, and grow unless their side is given.
 TEST(ExportOptions, OfPages) {
   const ExportOptions none = parsed({}).options;
