@@ -73,7 +73,7 @@ endif()
 if(LIBATLAS_BUILD_APPS OR LIBATLAS_BUILD_EXAMPLES)
   find_package(CLI11 REQUIRED)            # libcli11-dev: command lines
 endif()
-if(LIBATLAS_BUILD_EXAMPLES OR LIBATLAS_BUILD_TESTS)
+if(LIBATLAS_BUILD_EXAMPLES OR LIBATLAS_BUILD_TESTS OR LIBATLAS_TUNING)
   find_package(embree 4 QUIET)            # libembree-dev: the sample scene's light, tests' rays
   if(NOT embree_FOUND)
     find_package(embree 3 REQUIRED)

@@ -65,8 +65,9 @@ function(atlas_component name)
     set_target_properties(${target} PROPERTIES INSTALL_RPATH $ORIGIN)
   endif()
   if(LIBATLAS_INSTALL)
-    install(TARGETS ${target} EXPORT libatlasTargets COMPONENT development
-            LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR} ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
+    install(TARGETS ${target} EXPORT libatlasTargets
+            LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT library NAMELINK_COMPONENT development
+            ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT development)
     atlas_install_pkgconfig("${name}" "${below}" "${libraries}")
   elseif(BUILD_SHARED_LIBS)  # which installed programs of the parent project need
     install(TARGETS ${target} LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR} NAMELINK_SKIP)

@@ -13,7 +13,7 @@
 #include "apps/common/program.h"
 #include "apps/common/quantity.h"
 #include "libatlas/core/counted.h"
-#include "libatlas/core/file_extension.h"
+#include "libatlas/files/file_extension.h"
 #include "libatlas/image/webp.h"
 
 namespace atlas::app {
@@ -148,10 +148,10 @@ void add_texture_options(CLI::App& app, ExportOptions& options, RawText& raw) {
          "parts of a chart kept apart")
       ->check(not_negative());
   app.add_option(
-      "--texel", raw.texel,
-      "Length of a texel on the real surface, e.g. 5mm, without a unit metres; default: "
-      "what the pages can hold, within 1 to 10 mm, and finer for fine scans; uvs without "
-      "light get a page as large as it needs")
+         "--texel", raw.texel,
+         "Length of a texel on the real surface, e.g. 5mm, without a unit metres; default: "
+         "what the pages can hold, within 1 to 10 mm, and finer for fine scans; uvs without "
+         "light get a page as large as it needs")
       ->excludes("--lightmap-options");
   add_off_flag(app, "--ignore-texture-density", options.follow_textures,
                "Do not refine where the diffuse texture is finer than --texel");
@@ -325,6 +325,13 @@ bool is_page(const std::filesystem::path& report) {
   return lower_extension(report) == ".html";
 }
 
+constexpr std::pair<const char*, const char*> kExamples[] = {
+    {"A page that any browser opens, and a report to read",
+     "scene.ply -o world.html --report report.html"},
+    {"Uvs without light, on a square page", "part.obj -o part_uv.obj --charts-only --square"},
+    {"A lightmap of 1 cm a texel for a scene that stays as it is",
+     "room.glb -o room_lit.glb --keep-scene --texel 1cm"}};
+
 std::optional<ExportCommand> parse_export_command(int argc, char** argv, int& exit_code) {
   CLI::App app(
       "Turns a scene whose vertices carry illumination into a walkable world with texture atlases.",
@@ -336,6 +343,7 @@ std::optional<ExportCommand> parse_export_command(int argc, char** argv, int& ex
   add_texture_options(app, command.options, raw);
   add_page_options(app, command.options);
   add_run_options(app, command);
+  add_examples(app, kExamples);
   exit_code = parse(app, argc, argv);
   if (exit_code >= 0) return std::nullopt;
   exit_code = 2;

@@ -9,7 +9,7 @@
 
 #include "apps/common/options.h"
 #include "apps/common/program.h"
-#include "libatlas/core/parse_number.h"
+#include "libatlas/files/parse_number.h"
 
 namespace atlas::app {
 namespace {
@@ -158,6 +158,13 @@ CLI::App* add_rects(CLI::App& app, PackCommand& c) {
   add_page_options(*rects, c);
   add_effort_options(*rects, c);
   add_run_options(*rects, c);
+  constexpr std::pair<const char*, const char*> examples[] = {
+      {"On as few pages of 2048 x 2048 as possible", "sizes.csv -o placed.csv --page 2048"},
+      {"A strip 1000 wide, as low as ten seconds find it",
+       "sizes.csv -o placed.json --page 1000x0 --preset best --budget 10s"},
+      {"Four texels apart, in blocks of 4 x 4, turned where that helps",
+       "sizes.csv -o placed.csv --padding 4 --align 4 --rotate"}};
+  add_examples(*rects, examples);
   return rects;
 }
 
@@ -183,6 +190,12 @@ CLI::App* add_images(CLI::App& app, PackCommand& c) {
   add_page_options(*images, c);
   add_effort_options(*images, c);
   add_run_options(*images, c);
+  constexpr std::pair<const char*, const char*> examples[] = {
+      {"One page as small as the sprites allow, with its JSON", "sprites -o sheet --crop"},
+      {"Pages with sides that are powers of two, edges repeated for bilinear lookups",
+       "sprites -o sheet --pot --extrude 2 --padding 2"},
+      {"Frames as an array, in natural order, with animations", "sprites -o sheet --data array"}};
+  add_examples(*images, examples);
   return images;
 }
 
@@ -219,6 +232,13 @@ void add_mesh(CLI::App& app, PackCommand& c) {
   add_page_options(*mesh, c);
   add_effort_options(*mesh, c);
   add_run_options(*mesh, c);
+  constexpr std::pair<const char*, const char*> examples[] = {
+      {"The charts of a mesh, packed anew at one density", "model.obj -o packed.obj"},
+      {"On a page of 1024, turned freely, two texels apart",
+       "model.obj -o packed.obj --page 1024 --rotations 64 --padding 2"},
+      {"On up to four pages, with sizes relative to each other as they are",
+       "model.glb -o packed.obj --pages 4 --keep-density"}};
+  add_examples(*mesh, examples);
 }
 
 }  // namespace
@@ -231,6 +251,11 @@ int parse_command_line(int argc, char** argv, PackCommand& c) {
   CLI::App* rects = add_rects(app, c);
   CLI::App* images = add_images(app, c);
   add_mesh(app, c);
+  constexpr std::pair<const char*, const char*> examples[] = {
+      {"Rectangles on pages", "rects sizes.csv -o placed.csv"},
+      {"A folder of images on one page", "images sprites -o sheet --crop"},
+      {"The uvs of a mesh, packed anew", "mesh model.obj -o packed.obj"}};
+  add_examples(app, examples);
   if (const int code = parse(app, argc, argv); code >= 0) return code;
   if (const std::string why = about_effort(*app.get_subcommands().front(), c); !why.empty()) {
     print_error("atlas-pack", why);

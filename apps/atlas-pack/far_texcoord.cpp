@@ -9,7 +9,7 @@
 #include <optional>
 #include <string>
 
-#include "libatlas/core/file_extension.h"
+#include "libatlas/files/file_extension.h"
 #include "libatlas/scene/reader.h"
 
 namespace atlas::app {

@@ -14,10 +14,10 @@
 #include "apps/atlas-pack/uv_charts.h"
 #include "apps/common/depfile.h"
 #include "apps/common/files.h"
-#include "libatlas/core/atomic_file.h"
 #include "libatlas/core/counted.h"
-#include "libatlas/core/file_extension.h"
-#include "libatlas/core/safe_file_name.h"
+#include "libatlas/files/atomic_file.h"
+#include "libatlas/files/file_extension.h"
+#include "libatlas/files/safe_file_name.h"
 #include "libatlas/pack/fit.h"
 #include "libatlas/scene/reader.h"
 

@@ -8,8 +8,8 @@
 #include <utility>
 
 #include "apps/common/files.h"
-#include "libatlas/core/atomic_file.h"
-#include "libatlas/core/file_extension.h"
+#include "libatlas/files/atomic_file.h"
+#include "libatlas/files/file_extension.h"
 #include "libatlas/image/image_io.h"
 
 namespace atlas::app {

@@ -10,10 +10,10 @@
 #include <vector>
 
 #include "apps/atlas-pack/packed_atlas.h"
-#include "libatlas/core/atomic_file.h"
 #include "libatlas/core/image.h"
 #include "libatlas/core/rect.h"
 #include "libatlas/core/status.h"
+#include "libatlas/files/atomic_file.h"
 
 namespace atlas::app {
 

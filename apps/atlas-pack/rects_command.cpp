@@ -11,9 +11,9 @@
 #include "apps/atlas-pack/commands.h"
 #include "apps/atlas-pack/preview.h"
 #include "apps/common/files.h"
-#include "libatlas/core/atomic_file.h"
 #include "libatlas/core/counted.h"
-#include "libatlas/core/file_extension.h"
+#include "libatlas/files/atomic_file.h"
+#include "libatlas/files/file_extension.h"
 
 namespace atlas::app {
 namespace {

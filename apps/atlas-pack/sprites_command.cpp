@@ -11,8 +11,8 @@
 #include "apps/atlas-pack/preview.h"
 #include "apps/common/depfile.h"
 #include "apps/common/files.h"
-#include "libatlas/core/atomic_file.h"
-#include "libatlas/core/file_extension.h"
+#include "libatlas/files/atomic_file.h"
+#include "libatlas/files/file_extension.h"
 #include "libatlas/image/image_io.h"
 #include "libatlas/image/image_sides.h"
 

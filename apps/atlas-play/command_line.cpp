@@ -11,7 +11,7 @@
 #include "apps/common/options.h"
 #include "apps/common/program.h"
 #include "apps/common/quantity.h"
-#include "libatlas/core/parse_number.h"
+#include "libatlas/files/parse_number.h"
 #include "libatlas/view/start_camera.h"
 
 namespace atlas::app {
@@ -198,6 +198,7 @@ void add_run_options(CLI::App& app, CommandLine& l) {
   app.add_option("--record", l.play.record, "write every frame to this folder");
   app.add_option("--screenshot", l.play.screenshot,
                  "write the last frame to this PNG file (in a window: F12 does)");
+  add_trust_options(app, l.read);
   app.add_flag("--plan", l.plan, "print what is compiled and allocated, and why, and end");
   add_off_flag(app, "--no-vsync", l.vsync, "do not wait for the display");
   app.add_flag("--debug", l.debug, "a debug context: every OpenGL error is reported");
@@ -332,6 +333,12 @@ Parsed parse_command_line(int argc, char** argv) {
   add_light_options(app, l, light);
   add_run_options(app, l);
   add_bench_options(app, l);
+  constexpr std::pair<const char*, const char*> examples[] = {
+      {"Walk through an exported world", "world.wrl"},
+      {"A model under the sun of a day in June, in Lisbon", "model.glb --light sun:172,38.7,9"},
+      {"A picture without a window or a graphics card",
+       "world.wrl --headless --software --screenshot picture.png"}};
+  add_examples(app, examples);
   if (const int code = parse(app, argc, argv); code >= 0) {
     parsed.exit_code = code;
     return parsed;

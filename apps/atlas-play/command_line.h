@@ -25,6 +25,7 @@ struct CommandLine {
   double fov = 60;
   std::optional<double> key_degrees;  // nothing: 16 in a window, 90 without
   std::vector<double> north;          // of the sun; empty: chosen by the up axis
+  ReadOptions read;                   // confine and limits
   RenderOptions render;
   BenchOptions measure;
   PlayOptions play;

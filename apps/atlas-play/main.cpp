@@ -8,9 +8,10 @@
 
 #include "apps/atlas-play/command_line.h"
 #include "apps/common/files.h"
+#include "apps/common/options.h"
 #include "apps/common/program.h"
 #include "apps/common/terminal.h"
-#include "libatlas/core/file_extension.h"
+#include "libatlas/files/file_extension.h"
 
 namespace atlas::app {
 namespace {
@@ -146,7 +147,7 @@ Status play(CommandLine& line, Terminal& terminal, const Context& context) {
   ViewSceneOptions look;
   look.textures_hold_light = line.baked_textures;
   look.vertices_hold_colours = line.colours;
-  Result<ViewScene> scene = load_view(line.scene, look, context);
+  Result<ViewScene> scene = load_view(line.scene, look, context, line.read);
   if (!scene.ok()) return scene.status();
   if (Status s = check_files_stay(line, *scene); !s.ok()) return s;
   scene->metres_per_unit = line.unit;
@@ -204,6 +205,7 @@ int main_of(int argc, char** argv) {
   if (parsed.exit_code) return *parsed.exit_code;
   name_input(parsed.line.scene);
   Terminal terminal("atlas-play", parsed.line.quiet);
+  terminal.reword([](std::string_view text) { return with_flags(text, kTrustFlags); });
   const atlas::Status status = play(parsed.line, terminal, terminal.context(0));
   if (!status.ok()) terminal.error(status.message());
   return exit_code(status);

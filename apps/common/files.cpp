@@ -9,8 +9,8 @@
 #include <cerrno>
 #include <cstring>
 
-#include "libatlas/core/atomic_file.h"
-#include "libatlas/core/links.h"
+#include "libatlas/files/atomic_file.h"
+#include "libatlas/files/links.h"
 
 namespace atlas::app {
 namespace {

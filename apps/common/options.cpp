@@ -237,6 +237,15 @@ CLI::Option* add_off_flag(CLI::App& app, const std::string& name, bool& value,
       name, [&value] { value = false; }, help);
 }
 
+void add_examples(CLI::App& app, std::span<const std::pair<const char*, const char*>> examples) {
+  std::string name = app.get_name();
+  if (app.get_parent()) name = app.get_parent()->get_name() + " " + name;
+  std::string text = "\nExamples:\n";
+  for (const auto& [what, command] : examples)
+    text += fmt::format("  {} {}\n      {}\n", name, command, what);
+  app.footer(text);
+}
+
 int parse(CLI::App& app, int argc, char** argv) {
   const auto refuse = [&](const std::string& why) {
     const std::string command =

@@ -47,6 +47,9 @@ inline constexpr FlagName kTrustFlags[] = {{"ReadOptions::confine", "--confine"}
 // Returns a message of the library with the flags in place of the fields, for the program's users.
 std::string with_flags(std::string_view text, std::span<const FlagName> names);
 
+// Ends the help with examples: what each does, and the command without the program's name.
+void add_examples(CLI::App& app, std::span<const std::pair<const char*, const char*>> examples);
+
 // Parses the command line, after adding --version. Returns -1 to go on, or the exit code with which
 // the program should end: 0 after the help or the version, 2 after one line about what is wrong.
 int parse(CLI::App& app, int argc, char** argv);

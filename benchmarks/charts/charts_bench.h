@@ -12,7 +12,7 @@
 
 namespace atlas::bench {
 
-// Returns a mesh of charts_figures.h or support/work.h by name, or reads a file if the name has an
+// Returns a mesh of shapes/figures.h or support/work.h by name, or reads a file if the name has an
 // extension. Errors: bad_option; those of read_scene.
 Result<LoadedScene> charts_work(const std::string& name, const Context& context);
 

@@ -4,8 +4,8 @@
 #include <algorithm>
 
 #include "benchmarks/charts/charts_bench.h"
-#include "benchmarks/charts/charts_figures.h"
 #include "benchmarks/charts/charts_picture.h"
+#include "benchmarks/shapes/figures.h"
 #include "benchmarks/support/work.h"
 #include "libatlas/image/image_io.h"
 #include "libatlas/pipeline/export_world.h"

@@ -12,7 +12,7 @@
 
 #include "apps/common/options.h"
 #include "benchmarks/charts/charts_bench.h"
-#include "benchmarks/charts/charts_figures.h"
+#include "benchmarks/shapes/figures.h"
 #include "benchmarks/support/work.h"
 
 namespace {

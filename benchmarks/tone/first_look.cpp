@@ -55,15 +55,17 @@ class ShownWorld {
 // The light of the scene itself, along the same rays.
 class Light {
  public:
-  explicit Light(const LightScene& scene)
-      : scene_(scene), tracer_(scene.shell.positions, scene.shell.triangles) {}
+  explicit Light(const LightScene& scene) : scene_(scene) {
+    if (!scene.shell.triangles.empty())
+      tracer_.emplace(scene.shell.positions, scene.shell.triangles);
+  }
 
   void look(glm::vec3 eye, glm::vec3 direction) {
     glares = false;
-    if (scene_.shell.triangles.empty()) return;
+    if (!tracer_) return;
     // glTF's y is the scene's z.
     const auto turned = [](glm::vec3 v) { return glm::vec3(v.x, -v.z, v.y); };
-    const cabin::Hit hit = tracer_.nearest(turned(eye), turned(direction));
+    const cabin::Hit hit = tracer_->nearest(turned(eye), turned(direction));
     if (hit.triangle == ~0u) return;
     const auto& v = scene_.shell.triangles[hit.triangle];
     glares = scene_.glares[v[0]] || scene_.glares[v[1]] || scene_.glares[v[2]];
@@ -83,7 +85,7 @@ class Light {
 
  private:
   const LightScene& scene_;
-  cabin::Tracer tracer_;
+  std::optional<cabin::Tracer> tracer_;  // nothing: the scene was not made here
 };
 
 }  // namespace

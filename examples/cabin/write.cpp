@@ -5,7 +5,7 @@
 #include <set>
 #include <string>
 
-#include "libatlas/core/atomic_file.h"
+#include "libatlas/files/atomic_file.h"
 #include "libatlas/image/image_io.h"
 
 namespace cabin {

@@ -300,6 +300,29 @@ LIBATLAS_API libatlas_status libatlas_get_seams(libatlas_context* context,
                                                 const libatlas_unwrapped* unwrapped, uint32_t mesh,
                                                 uint8_t* seams, size_t count);
 
+// ---- Values at vertices into textures ----
+
+typedef struct libatlas_transfer_options {
+  size_t size;
+  uint32_t page;   // of the atlas; default 0
+  int32_t shifts;  // samples a texel, 1..64; rounded up to a square; default 4
+} libatlas_transfer_options;
+LIBATLAS_API libatlas_status libatlas_transfer_options_init(libatlas_transfer_options* options,
+                                                            size_t size);
+
+// Writes values at vertices into the texels of a page, whose bilinear interpolation then comes as
+// near to them over each chart as it can, in the least squares sense. Texels beside charts are
+// filled from those of the charts. `values`: 3 floats, finite, for each vertex of
+// libatlas_mesh_uvs, one mesh after the other; `value_count` of these in all. `texels`: room for 3
+// floats a texel, rows from the bottom; `texel_count` is width times height of the page. `options`
+// may be null. Status: BAD_INPUT for the counts or a value that is not finite, BAD_OPTION,
+// CANCELLED.
+LIBATLAS_API libatlas_status libatlas_transfer(libatlas_context* context,
+                                               const libatlas_unwrapped* unwrapped,
+                                               const float* values, size_t value_count,
+                                               const libatlas_transfer_options* options,
+                                               float* texels, size_t texel_count);
+
 // ---- Packing rectangles ----
 
 typedef struct libatlas_pack_options {

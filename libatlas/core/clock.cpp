@@ -1,55 +1,12 @@
 #include "libatlas/core/clock.h"
 
-#include <sys/resource.h>
-#include <time.h>
-#ifdef __GLIBC__
-#include <malloc.h>
-#endif
-
 #include <chrono>
-#include <fstream>
-#include <string>
 
 namespace atlas {
 
 double wall_seconds() {
   using Clock = std::chrono::steady_clock;
   return std::chrono::duration<double>(Clock::now().time_since_epoch()).count();
-}
-
-double cpu_seconds() {
-  rusage usage{};
-  getrusage(RUSAGE_SELF, &usage);
-  const auto seconds = [](const timeval& t) { return double(t.tv_sec) + 1e-6 * double(t.tv_usec); };
-  return seconds(usage.ru_utime) + seconds(usage.ru_stime);
-}
-
-double thread_cpu_seconds() {
-  timespec now{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
-  return double(now.tv_sec) + 1e-9 * double(now.tv_nsec);
-}
-
-void return_freed_memory() {
-#ifdef __GLIBC__
-  // Returning less and requesting it again would cost some hundredths of the time in which a small
-  // mesh is cut into charts.
-  constexpr std::size_t worth_it = std::size_t{4} << 20;
-  if (mallinfo2().fordblks >= worth_it) malloc_trim(0);
-#endif
-}
-
-std::int64_t peak_memory() {
-  // Linux keeps the figure of getrusage() when a program is started by another one: it is at least
-  // what the caller held, if that was more than the program itself ever does.
-  std::ifstream status("/proc/self/status");
-  for (std::string word; status >> word;) {
-    std::int64_t kibibytes = 0;
-    if (word == "VmHWM:" && status >> kibibytes) return kibibytes * 1024;
-  }
-  rusage usage{};
-  getrusage(RUSAGE_SELF, &usage);
-  return std::int64_t{usage.ru_maxrss} * 1024;
 }
 
 }  // namespace atlas

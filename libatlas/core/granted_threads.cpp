@@ -1,17 +1,15 @@
 #include "libatlas/core/granted_threads.h"
 
-#include <sys/resource.h>
-#include <unistd.h>
-
 #include <algorithm>
 #include <cstdint>
-#include <fstream>
 #include <future>
 #include <mutex>
 #include <new>
 #include <system_error>
 #include <thread>
 #include <vector>
+
+#include "libatlas/core/process.h"
 
 namespace atlas {
 namespace {
@@ -20,14 +18,8 @@ namespace {
 // of them for its stack, and the C library reserves 64 MiB for its allocations. Half of the
 // addresses remain for the work.
 std::size_t addressable(std::size_t count) {
-  rlimit limit{};
-  if (::getrlimit(RLIMIT_AS, &limit) != 0 || limit.rlim_cur == RLIM_INFINITY) return count;
-  std::uint64_t pages = 0;
-  std::ifstream("/proc/self/statm") >> pages;
-  const std::uint64_t used = pages * std::uint64_t(::sysconf(_SC_PAGESIZE));
-  const std::uint64_t room = limit.rlim_cur > used ? limit.rlim_cur - used : 0;
   constexpr std::uint64_t kThread = std::uint64_t{72} << 20;
-  return std::size_t(std::min<std::uint64_t>(count, room / 2 / kThread));
+  return std::size_t(std::min<std::uint64_t>(count, free_address_space() / 2 / kThread));
 }
 
 }  // namespace

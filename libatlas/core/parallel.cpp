@@ -25,7 +25,10 @@ class ChunkOnThread {
   }
   ~ChunkOnThread() {
     in_chunk = nested_;
-    if (away_) lent_.fetch_add(own_cpu_seconds() - begun_, std::memory_order_relaxed);
+    if (!away_) return;
+    const double used = own_cpu_seconds() - begun_;
+    for (double lent = lent_; !lent_.compare_exchange_weak(lent, lent + used);) {
+    }
   }
   ChunkOnThread(const ChunkOnThread&) = delete;
   ChunkOnThread& operator=(const ChunkOnThread&) = delete;

@@ -1,5 +1,6 @@
 // Internal: run_chunks(), the loop under parallel_for(): on threads of oneTBB (run_chunks_tbb.cpp)
-// or, in a build without it, on threads of our own (run_chunks_own.cpp).
+// or, in a build without it, on threads of our own (run_chunks_own.cpp); in WebAssembly on the
+// caller's (run_chunks_none.cpp).
 #pragma once
 
 #include <cstddef>

@@ -5,7 +5,6 @@
 #include <array>
 #include <cmath>
 
-#include "libatlas/core/file_extension.h"
 #include "libatlas/core/glm_bridge.h"
 #include "libatlas/exporters/viewing/camera.h"
 #include "libatlas/exporters/viewing/visitor.h"
@@ -14,6 +13,7 @@
 #include "libatlas/exporters/writing/far_origin.h"
 #include "libatlas/exporters/writing/page_sides.h"
 #include "libatlas/exporters/writing/text_output.h"
+#include "libatlas/files/file_extension.h"
 
 namespace atlas {
 namespace fs = std::filesystem;

@@ -8,11 +8,11 @@
 #include <string>
 #include <vector>
 
-#include "libatlas/core/atomic_file.h"
 #include "libatlas/core/context.h"
-#include "libatlas/core/safe_file_name.h"
 #include "libatlas/core/status.h"
 #include "libatlas/core/vec.h"
+#include "libatlas/files/atomic_file.h"
+#include "libatlas/files/safe_file_name.h"
 #include "libatlas/unwrap/instance.h"
 
 namespace atlas {
@@ -28,6 +28,11 @@ struct Viewpoint {
   double fov = 1.0;           // radians, in (0, pi); of the smaller side of the window
   // Whether the scene surrounds the viewpoint: viewers then walk, otherwise they turn the object.
   bool inside = false;
+};
+
+struct NamedViewpoint {
+  std::string name = {};  // empty: it has none
+  Viewpoint viewpoint = {};
 };
 
 struct Page {
@@ -94,6 +99,7 @@ struct World {
   std::string title = {};
   std::vector<std::string> info = {};  // one line each, for WorldInfo and comments
   Viewpoint viewpoint = {};
+  std::vector<NamedViewpoint> further_viewpoints = {};  // offered by .html
   // If not null: the scene that the uvs are for. It is written with its own objects, materials,
   // normals and texture coordinates (see write_gltf and write_obj). The world then has one page,
   // without an image, whose `indices` are those of the scene, corner by corner. The scene must
@@ -194,8 +200,9 @@ Result<WorldFile> write_gltf(const World& world, const std::filesystem::path& pa
 
 // Writes a page of HTML that shows the world in a browser by itself: geometry, pages and viewer are
 // in this one file, which loads nothing. World::scene is refused (bad_option). Positions are
-// rounded to half a millimetre where the viewpoint is inside, else to a 65535th of the box; uvs to
-// a 32nd of a texel of 2048. docs/formats.md describes the data, which scripts can read as well.
+// rounded to a 64th of a millimetre where the viewpoint is inside, else to a 65535th of the box;
+// uvs to a 32nd of a texel of 2048. docs/formats.md describes the data, which scripts can read as
+// well.
 Result<WorldFile> write_html(const World& world, const std::filesystem::path& path,
                              AtomicFiles& files, const Context& context);
 

@@ -4,9 +4,9 @@
 #include <array>
 #include <string_view>
 
-#include "libatlas/core/file_extension.h"
-#include "libatlas/core/safe_file_name.h"
 #include "libatlas/exporters/world.h"
+#include "libatlas/files/file_extension.h"
+#include "libatlas/files/safe_file_name.h"
 
 namespace atlas {
 namespace {

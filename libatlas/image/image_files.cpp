@@ -18,7 +18,7 @@
 #include <utility>
 
 #include "libatlas/core/srgb.h"
-#include "libatlas/core/write_error.h"
+#include "libatlas/files/write_error.h"
 #include "libatlas/image/display_window.h"
 #include "libatlas/image/file_kind.h"
 #include "libatlas/image/image_claim.h"
@@ -69,6 +69,17 @@ ImageClaim spec_claim(const OIIO::ImageInput& input) {
           flat ? kFlatByte : kPackedByte};
 }
 
+// Refuses rows so long that OpenImageIO would take gigabytes: it takes memory for 256 rows at once,
+// also where an image has two.
+Status check_rows(const Source& source) {
+  constexpr std::uint64_t kLongestRow = 4 << 20;  // bytes
+  if (source.input->spec().scanline_bytes(true) <= kLongestRow) return {};
+  return {ErrorCode::unsupported,
+          fmt::format("{}: its rows are {} texels long, which is too much to read: make the image "
+                      "smaller",
+                      source.name, source.input->spec().width)};
+}
+
 template <class T>
 Result<Image<T>> read_pixels(const Source& source) {
   OIIO::ImageInput& input = *source.input;
@@ -76,6 +87,7 @@ Result<Image<T>> read_pixels(const Source& source) {
   ImageClaim claim = spec_claim(input);
   claim.channel_bytes = sizeof(T);
   if (Status s = check_claim(claim, source.bytes, source.name); !s.ok()) return s;
+  if (Status s = check_rows(source); !s.ok()) return s;
   const bool other_part = stores_another_part(input);
   if (other_part) {
     claim.width = spec.full_width;

@@ -14,7 +14,7 @@
 #include <utility>
 
 #include "libatlas/core/srgb.h"
-#include "libatlas/core/write_error.h"
+#include "libatlas/files/write_error.h"
 #include "libatlas/image/encoded_image.h"
 #include "libatlas/image/file_kind.h"
 #include "libatlas/image/image_module.h"

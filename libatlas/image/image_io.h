@@ -57,7 +57,7 @@ struct PngOptions {
 };
 
 // Writes a PNG file with 1 to 4 channels, whatever the extension of `path` is. `path` is written
-// directly; core/atomic_file.h makes files whole or absent.
+// directly; files/atomic_file.h makes files whole or absent.
 Status write_png(const std::filesystem::path& path, const Image8& image, const PngOptions& options);
 
 // Writes a ZIP-compressed OpenEXR file of scene-linear values: as half floats, or as floats if the

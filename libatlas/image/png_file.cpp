@@ -11,7 +11,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "libatlas/core/write_error.h"
+#include "libatlas/files/write_error.h"
 #include "libatlas/image/image_claim.h"
 
 namespace atlas {

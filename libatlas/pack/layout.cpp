@@ -8,7 +8,7 @@
 
 namespace atlas {
 
-using pack::Cells;
+using pack::AlignedCells;
 using pack::FreeRects;
 
 struct AtlasLayout::State {
@@ -58,7 +58,7 @@ struct AtlasLayout::State {
 
   PackOptions options;
   std::vector<PinnedRect> pins;
-  Cells cells;
+  AlignedCells cells;
   Extent page;  // cells
   std::vector<Item> items;
   std::size_t present = 0;

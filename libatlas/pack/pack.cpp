@@ -13,7 +13,7 @@
 namespace atlas {
 namespace {
 
-using pack::Cells;
+using pack::AlignedCells;
 using pack::Layout;
 using pack::Problem;
 
@@ -22,7 +22,7 @@ using pack::Problem;
 constexpr std::int32_t kLongestSide = 1 << 30;
 
 // Returns the number of cells along an open side: as many as the longest page has.
-std::int32_t open_side(const PackOptions& options, const Cells& cells) {
+std::int32_t open_side(const PackOptions& options, const AlignedCells& cells) {
   return cells.page(kLongestSide - options.padding);
 }
 
@@ -69,8 +69,8 @@ struct Active {
   std::vector<std::uint32_t> ids;
 };
 
-Active select_items(std::span<const Extent> items, const Cells& cells, const PackOptions& options,
-                    PackResult& result) {
+Active select_items(std::span<const Extent> items, const AlignedCells& cells,
+                    const PackOptions& options, PackResult& result) {
   Active active;
   const std::int32_t width =
       options.page.width > 0 ? cells.page(options.page.width) : open_side(options, cells);
@@ -145,7 +145,7 @@ Result<PackResult> pack_rects(std::span<const Extent> items, const PackOptions& 
   if (Status status = check(items, options); !status.ok()) return status;
   PackResult result;
   result.placements.resize(items.size());
-  const Cells cells(options);
+  const AlignedCells cells(options);
   const Active active = select_items(items, cells, options, result);
   if (Status status = check_area(items, active); !status.ok()) return status;
 

@@ -13,9 +13,9 @@
 #include "libatlas/core/background.h"
 #include "libatlas/core/clock.h"
 #include "libatlas/core/parallel.h"
-#include "libatlas/core/write_error.h"
 #include "libatlas/exporters/html/light_page.h"
 #include "libatlas/exporters/world.h"
+#include "libatlas/files/write_error.h"
 #include "libatlas/image/image_io.h"
 #include "libatlas/image/webp.h"
 

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "libatlas/bake/fidelity.h"
-#include "libatlas/core/atomic_file.h"
+#include "libatlas/files/atomic_file.h"
 #include "libatlas/pipeline/export_options.h"
 #include "libatlas/report/export_report.h"
 #include "libatlas/unwrap/page_layout.h"

@@ -6,9 +6,9 @@
 #include <bit>
 #include <cmath>
 
-#include "libatlas/core/file_extension.h"
 #include "libatlas/core/is_enumerator.h"
 #include "libatlas/exporters/world.h"
+#include "libatlas/files/file_extension.h"
 #include "libatlas/image/webp.h"
 #include "libatlas/unwrap/unwrap.h"
 #include "libatlas/uvs/placement.h"

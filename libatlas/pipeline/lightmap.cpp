@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "libatlas/core/file_extension.h"
+#include "libatlas/files/file_extension.h"
 #include "libatlas/scene/gltf/gltf_kept_colours.h"
 
 namespace atlas {

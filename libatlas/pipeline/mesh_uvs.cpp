@@ -192,8 +192,6 @@ class MeshUnwrapper {
   MeshUvsOfScene out_;
 };
 
-}  // namespace
-
 void report_unwrapped(const UnwrappedMesh& all, double metres_per_unit, ExportReport& report) {
   report.charts = all.charts.charts;
   report.distortion = all.charts.distortion;
@@ -217,9 +215,19 @@ void report_unwrapped(const UnwrappedMesh& all, double metres_per_unit, ExportRe
   }
 }
 
-Result<MeshUvsOfScene> unwrap_meshes_once(const Scene& scene, const ExportOptions& options,
-                                          const Context& context) {
-  return MeshUnwrapper(scene, options, context).run();
+}  // namespace
+
+Result<MeshUvsOfScene> unwrap_meshes_once(ExportJob& job) {
+  const Context& context = job.record.begin("charts");
+  Result<MeshUvsOfScene> made = MeshUnwrapper(job.scene, job.options, context).run();
+  if (!made.ok()) return made;
+  ExportReport& report = job.report;
+  report_unwrapped(made->all, job.scene.metres_per_unit, report);
+  report.triangles_out = job.scene.triangle_count();
+  job.record.finish({report.triangles_out, report.charts.size(), "charts",
+                     fmt::format("L2 {:.4f}, {:.0f} % used by charts", report.distortion.stretch_l2,
+                                 100 * report.uv_utilization)});
+  return made;
 }
 
 }  // namespace atlas

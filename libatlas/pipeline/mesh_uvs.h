@@ -5,11 +5,9 @@
 #include <cstdint>
 #include <vector>
 
-#include "libatlas/core/context.h"
 #include "libatlas/core/status.h"
-#include "libatlas/pipeline/export_options.h"
-#include "libatlas/report/export_report.h"
-#include "libatlas/scene/scene.h"
+#include "libatlas/core/vec.h"
+#include "libatlas/pipeline/export_job.h"
 #include "libatlas/unwrap/instance.h"
 #include "libatlas/unwrap/unwrap.h"
 
@@ -24,13 +22,9 @@ struct MeshUvsOfScene {
   UnwrappedMesh all = {};  // its pages and what was measured
 };
 
-// For options whose mesh_uvs are not those of places. Errors: those of unwrap_mesh(); bad_option
-// for a scene that was not read from glTF with ReadOptions::rest; unsupported where a mesh is shown
-// with other triangles in two places.
-Result<MeshUvsOfScene> unwrap_meshes_once(const Scene& scene, const ExportOptions& options,
-                                          const Context& context);
-
-// Reports what was measured on them.
-void report_unwrapped(const UnwrappedMesh& all, double metres_per_unit, ExportReport& report);
+// For options whose mesh_uvs are not those of places; reports what was measured. Errors: those of
+// unwrap_mesh(); bad_option for a scene that was not read from glTF with ReadOptions::rest;
+// unsupported where a mesh is shown with other triangles in two places.
+Result<MeshUvsOfScene> unwrap_meshes_once(ExportJob& job);
 
 }  // namespace atlas

@@ -5,11 +5,11 @@
 #include <algorithm>
 #include <cmath>
 
-#include "libatlas/core/atomic_file.h"
 #include "libatlas/core/counted.h"
 #include "libatlas/core/degrees.h"
 #include "libatlas/core/glm_bridge.h"
 #include "libatlas/exporters/world.h"
+#include "libatlas/files/atomic_file.h"
 #include "libatlas/pipeline/lightmap.h"
 #include "libatlas/scene/triangle_area.h"
 #include "libatlas/texture/luminance.h"

@@ -14,6 +14,7 @@ namespace atlas {
 struct SizedCharts {
   ChartSet charts;
   std::vector<Vec2d> densities, full_densities;
+  double sizing = 1;  // factor of the densities asked for at which they are sized (sizing_factor)
 };
 
 struct SuitPagesOptions {

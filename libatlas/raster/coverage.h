@@ -40,13 +40,13 @@ void cut(const Polygon& in, double at, Polygon& below, Polygon& above) {
 }
 
 // The area of a polygon (positive for either orientation) and its centroid.
-struct Moments {
+struct AreaMoments {
   double area = 0;
   Vec2d centroid;
 };
 
-inline Moments moments(const Polygon& q) {
-  Moments m;
+inline AreaMoments moments(const Polygon& q) {
+  AreaMoments m;
   double area2 = 0, sx = 0, sy = 0;
   const Vec2d o = q.p[0];
   for (int i = 1; i + 1 < q.n; ++i) {
@@ -116,7 +116,7 @@ void cover_row(Polygon strip, int y, const Rect& clip, Texel&& texel) {
       continue;
     }
     cut<0>(strip, x + 1.0, part, rest);
-    const Moments m = part.n >= 3 ? moments(part) : Moments{};
+    const AreaMoments m = part.n >= 3 ? moments(part) : AreaMoments{};
     if (m.area > 0) texel(x, y, m.area, m.centroid);
     strip = rest;
     ++x;
@@ -142,7 +142,7 @@ void cover_triangle(const TexelTriangle& p, const Rect& clip, Texel&& texel) {
   const int x = static_cast<int>(std::floor(left));
   if (hi <= y + 1 && right <= x + 1) {  // inside one texel, as most triangles of a fine mesh are
     if (x < clip.x || x >= clip.right() || y < clip.y || y >= clip.top()) return;
-    const Moments m = moments(rest);
+    const AreaMoments m = moments(rest);
     if (m.area > 0) texel(x, y, m.area, m.centroid);
     return;
   }

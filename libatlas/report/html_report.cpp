@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-#include "libatlas/core/atomic_file.h"
+#include "libatlas/files/atomic_file.h"
 #include "libatlas/image/webp.h"
 #include "libatlas/report/report_json.h"
 #include "report_page.h"

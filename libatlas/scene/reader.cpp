@@ -6,8 +6,8 @@
 #include <new>
 
 #include "libatlas/core/clock.h"
-#include "libatlas/core/file_extension.h"
 #include "libatlas/core/progress.h"
+#include "libatlas/files/file_extension.h"
 #include "libatlas/scene/building/formats.h"
 #include "libatlas/scene/gltf/gltf_source.h"
 

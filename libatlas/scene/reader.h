@@ -28,7 +28,7 @@ struct ReadOptions {
   bool unlit_textures = true;  // false: the same if the scene carries no illumination
   // Keeps PNG and JPEG textures encoded, in Texture::encoded, for programs that only pass them on.
   bool encoded_textures = false;
-  bool normals = false;  // true: reads the file's normals into Scene::normals
+  bool normals = false;   // true: reads the file's normals into Scene::normals
   bool polygons = false;  // true: keeps which triangles are one face, in Scene::polygons
   // Keeps what Scene has no arrays for, in Scene::source (glTF) and Material::mtl_lines (OBJ), and
   // reads Scene::vertex_opacity (alpha of PLY's and OFF's vertices and of glTF's COLOR_0). All
@@ -57,6 +57,7 @@ struct ReadOptions {
 struct FileView {
   Vec3d position = {};
   Vec3d direction = {0, 0, -1};  // unit length
+  std::string name = {};         // as the file calls it; empty: not at all
 };
 
 struct LoadedScene {
@@ -78,6 +79,7 @@ struct LoadedScene {
   std::vector<double> material_uv_aspects = {};
   // The first Viewpoint of a VRML file, or the first perspective camera of a glTF file's scene.
   std::optional<FileView> view = {};
+  std::vector<FileView> further_views = {};  // the others, in the order of the file, at most 100
 };
 
 // Reads the scene at `path`; the extension (.obj .ply .off .stl .gltf .glb .wrl .wrz, any case)

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <string_view>
 
-#include "libatlas/core/parse_number.h"
+#include "libatlas/files/parse_number.h"
 #include "libatlas/shadow/light_path.h"
 
 namespace atlas {

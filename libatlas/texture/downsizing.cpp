@@ -6,7 +6,7 @@
 #include <limits>
 #include <vector>
 
-#include "libatlas/texture/lanes.h"
+#include "libatlas/core/lanes.h"
 
 namespace atlas {
 namespace {

@@ -4,7 +4,7 @@
 #include <cstring>
 #include <span>
 
-#include "libatlas/texture/wide_lanes.h"
+#include "libatlas/core/wide_lanes.h"
 
 namespace atlas {
 namespace {

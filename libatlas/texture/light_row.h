@@ -2,8 +2,8 @@
 // results are the same, bit by bit, as those of one sample after another.
 #pragma once
 
+#include "libatlas/core/lanes.h"
 #include "libatlas/core/vec.h"
-#include "libatlas/texture/lanes.h"
 #include "libatlas/texture/texture_levels.h"
 
 namespace atlas {

@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "libatlas/core/image.h"
+#include "libatlas/core/lanes.h"
 #include "libatlas/scene/scene.h"
-#include "libatlas/texture/lanes.h"
 
 namespace atlas {
 

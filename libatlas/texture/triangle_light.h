@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "libatlas/core/lanes.h"
 #include "libatlas/raster/scan.h"
-#include "libatlas/texture/lanes.h"
 #include "libatlas/texture/light_row.h"
 #include "libatlas/texture/luminance.h"
 #include "libatlas/texture/texture_levels.h"

@@ -315,8 +315,8 @@ Result<UnwrappedAtlas> Atlas::unwrap(const UnwrapOptions& options, const Context
   view.seams = seams_;
   view.polygons = polygons_;
   if (object_count_ > 1) view.objects = objects_;
-  const bool blocks =
-      std::ranges::any_of(instances_, [](const auto& densities) { return !densities.empty(); });
+  const bool blocks = std::any_of(instances_.begin(), instances_.end(),
+                                  [](const auto& densities) { return !densities.empty(); });
   std::vector<std::vector<MeshInstance>> instances;
   Result<UnwrappedMesh> all =
       blocks ? unwrap_in_blocks(options, context, instances) : unwrap_mesh(view, options, context);

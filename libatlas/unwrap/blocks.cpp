@@ -115,10 +115,11 @@ class BlockPacker {
   }
 
   bool instances_differ() const {
-    return options_.mip_levels > 0 && std::ranges::any_of(meshes_, [](const BlockMesh& mesh) {
-             return std::ranges::any_of(mesh.densities,
-                                        [&](float d) { return d != mesh.densities.front(); });
-           });
+    const auto differ = [](const BlockMesh& mesh) {
+      const auto& all = mesh.densities;
+      return std::any_of(all.begin(), all.end(), [&](float d) { return d != all.front(); });
+    };
+    return options_.mip_levels > 0 && std::any_of(meshes_.begin(), meshes_.end(), differ);
   }
 
   // Returns the rectangles of all instances, mesh by mesh.

@@ -10,10 +10,11 @@
 namespace atlas {
 namespace {
 
-// Limits of what PackPreset::best tries: the number of layouts, and the number of charts in all of
-// them together. This takes some seconds. Nineteen poorly filled sets of charts filled 0.503 of
-// their pages with 36 000 charts, and 0.505 with 50 000, in a third more time.
-constexpr std::uint64_t kBestLayouts = 8000, kBestCharts = 56000;
+// Limits of what PackPreset::best tries: the number of layouts in proportion to that of charts,
+// since few charts have few orders, and the number of charts in all of them together. Nineteen
+// poorly filled sets of charts filled 0.503 of their pages with 36 000 charts, and 0.505 with 50
+// 000, in a third more time.
+constexpr std::uint64_t kLayoutsAChart = 50, kBestCharts = 56000;
 
 // Returns the density that the common scale leaves for a box's side. Sides stop shrinking at the
 // smallest length that is allowed.
@@ -105,8 +106,8 @@ LayoutProblem::LayoutProblem(const WantedCharts& wanted, const LayoutEffort& how
   static_cast<FitOptions&>(fit) = box_fit_options(options);
   // Effort is limited instead of time, because a limit on time would make the result depend on
   // how busy the machine is.
-  fit.effort = std::clamp<std::uint64_t>(kBestCharts / std::max<std::size_t>(1, items.size()), 1,
-                                         kBestLayouts);
+  const std::uint64_t n = std::max<std::size_t>(1, items.size());
+  fit.effort = std::max<std::uint64_t>(1, std::min(kLayoutsAChart * n, kBestCharts / n));
   fit.free_aspect = options.free_aspect;
   fit.wanted_fill = options.wanted_fill;
   fit.press_pages = options.press_pages;

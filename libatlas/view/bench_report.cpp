@@ -6,7 +6,7 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
-#include "libatlas/core/atomic_file.h"
+#include "libatlas/files/atomic_file.h"
 #include "libatlas/view/bench.h"
 
 namespace atlas {

@@ -3,7 +3,7 @@
 
 #include <filesystem>
 
-#include "libatlas/core/atomic_file.h"
+#include "libatlas/files/atomic_file.h"
 #include "libatlas/image/image_io.h"
 
 namespace atlas {

@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "libatlas/core/clock.h"
-#include "libatlas/core/file_extension.h"
 #include "libatlas/exporters/world.h"
+#include "libatlas/files/file_extension.h"
 #include "libatlas/scene/named_materials.h"
 #include "libatlas/scene/reader.h"
 #include "libatlas/view/bench.h"
@@ -66,11 +66,13 @@ void say_what_is_opaque(const Scene& scene, const Context& context) {
 }  // namespace
 
 Result<ViewScene> load_view(const fs::path& path, const ViewSceneOptions& options,
-                            const Context& context) {
-  ReadOptions read;
-  read.srgb_colours = options.vertices_hold_colours;
-  read.lightmap = true;
-  Result<LoadedScene> loaded = read_scene(path, read, context);
+                            const Context& context, const ReadOptions& read) {
+  ReadOptions all;
+  all.confine = read.confine;
+  all.limits = read.limits;
+  all.srgb_colours = options.vertices_hold_colours;
+  all.lightmap = true;
+  Result<LoadedScene> loaded = read_scene(path, all, context);
   if (!loaded.ok()) return loaded.status();
   for (const std::string& line : loaded->defects.lines()) context.say("defect: " + line);
   say_what_is_dark(loaded->scene, context);

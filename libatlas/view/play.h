@@ -5,6 +5,7 @@
 #include <filesystem>
 
 #include "libatlas/core/context.h"
+#include "libatlas/scene/reader.h"
 #include "libatlas/shadow/light_path.h"
 #include "libatlas/view/context.h"
 #include "libatlas/view/renderer.h"
@@ -17,9 +18,10 @@ bool world_is_z_up(const std::filesystem::path& path);
 
 // Reads the scene at `path` and returns arrays to draw. Errors: those of the readers; bad_input if
 // nothing is drawn. Reports through the context what the readers left out or replaced, and what is
-// not shown. Colours at the vertices (ViewSceneOptions::vertices_hold_colours) are read as sRGB.
+// not shown. Of `read`, only `confine` and `limits` count; colours at the vertices
+// (ViewSceneOptions::vertices_hold_colours) are read as sRGB.
 Result<ViewScene> load_view(const std::filesystem::path& path, const ViewSceneOptions& options,
-                            const Context& context);
+                            const Context& context, const ReadOptions& read = {});
 
 struct PlayOptions {
   LightPath light = {};

@@ -108,7 +108,7 @@ Camera start_camera(const ViewScene& scene, const Vec3d& up, double fov_degrees,
                     const Context& context) {
   Camera camera = camera_for(scene.bounds, up, fov_degrees);
   if (scene.start) {
-    const auto [p, d] = *scene.start;
+    const Vec3d &p = scene.start->position, &d = scene.start->direction;
     const Vec3d& o = scene.origin;
     camera.eye = {p.x - o.x, p.y - o.y, p.z - o.z};
     fit_planes(camera, scene.bounds);

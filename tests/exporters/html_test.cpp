@@ -76,7 +76,7 @@ TEST(Html, HoldsEveryTriangleWithinItsStep) {
 }
 
 // From inside, a 65535th of a long box would be seen.
-TEST(Html, InsideTheStepIsHalfAMillimetre) {
+TEST(Html, InsideTheStepIsA64thOfAMillimetre) {
   const TempFolder folder;
   World world = with_images(folder, test::wavy_world(10, 1));  // 20 km long
   const auto step = [&] {
@@ -87,7 +87,7 @@ TEST(Html, InsideTheStepIsHalfAMillimetre) {
   world.viewpoint.inside = true;
   EXPECT_LT(step(), 0.002);  // what 24 bits hold
   world.metres_per_unit = 4e-3;
-  EXPECT_DOUBLE_EQ(step(), 0.0005);
+  EXPECT_DOUBLE_EQ(step(), 1.0 / 65536);
 }
 
 TEST(Html, SidesArePartsOfTheirOwn) {

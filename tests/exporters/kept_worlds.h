@@ -6,8 +6,8 @@
 #include <cstdint>
 #include <filesystem>
 
-#include "libatlas/core/atomic_file.h"
 #include "libatlas/exporters/world.h"
+#include "libatlas/files/atomic_file.h"
 #include "libatlas/scene/reader.h"
 
 namespace atlas::test {

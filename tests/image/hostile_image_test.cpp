@@ -246,6 +246,24 @@ TEST(HostileImage, NoMemoryForAttributesOfHalfAFile) {
   EXPECT_FALSE(judged(8 + 5));         // within a type: nothing is claimed yet
 }
 
+// Two rows that claim 200 MB, which the bytes may stand for. OpenImageIO took memory for 256 of
+// them.
+TEST(HostileImage, RowsAreNotLongerThanAnyImage) {
+  const TempFolder folder;
+  ASSERT_TRUE(write_exr(folder / "a.exr", ImageF(3, 2, 3)).ok());
+  std::string bytes = TempFolder::read(folder / "a.exr");
+  const std::size_t window = bytes.find("dataWindow");
+  ASSERT_NE(window, bytes.npos);
+  constexpr std::size_t kHighest = 11 + 6 + 4 + 8 + 3;  // byte of the last column
+  bytes[window + kHighest] = 1;
+  const auto path = folder.write("b.exr", bytes);
+  const auto read = read_image8(path);
+  ASSERT_FALSE(read.ok());
+  EXPECT_EQ(read.status().code(), ErrorCode::unsupported) << read.status().message();
+  EXPECT_NE(read.status().message().find("its rows are"), std::string::npos)
+      << read.status().message();
+}
+
 // OpenImageIO gives two lines for it.
 TEST(HostileImage, ErrorsAreOneLine) {
   const test::IgnoreLeaks readers;  // libpng leaves OpenImageIO's functions by longjmp

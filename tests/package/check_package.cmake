@@ -12,7 +12,9 @@ function(run)
   set(output "${output}" PARENT_SCOPE)
 endfunction()
 
-run(${CMAKE_COMMAND} --install ${BUILD} --prefix ${prefix} --component development)
+foreach(component library development)
+  run(${CMAKE_COMMAND} --install ${BUILD} --prefix ${prefix} --component ${component})
+endforeach()
 
 # Nothing may be called libatlas.so or libatlas.a, which belong to the ATLAS BLAS. Internal headers
 # must not be installed.
@@ -118,6 +120,17 @@ endwhile()
 if(snippets LESS 6)
   message(FATAL_ERROR "docs/library.md shows ${snippets} pieces of code")
 endif()
+
+# The first lines of the README are statements after an include.
+file(READ ${SOURCE}/README.md page)
+string(REGEX MATCH "```cpp\n(#include [^\n]*\n)([^`]*)```" found "${page}")
+file(WRITE ${BUILD}/tests/package/readme.cpp "${CMAKE_MATCH_1}
+void use(const std::vector<std::uint32_t>&, const std::vector<atlas::Vec2f>&, const std::vector<std::uint32_t>&);
+void unwrap(const std::vector<atlas::Vec3f>& positions, const std::vector<std::uint32_t>& indices);
+void unwrap(const std::vector<atlas::Vec3f>& positions, const std::vector<std::uint32_t>& indices) {
+${CMAKE_MATCH_2}}
+")
+run(${CXX} -std=c++20 -Wall -Wextra -Werror -fsyntax-only -I${prefix}/include ${BUILD}/tests/package/readme.cpp)
 
 # Compiles all public headers together: no two may define the same name.
 file(GLOB_RECURSE headers RELATIVE ${prefix}/include ${prefix}/include/*.h)

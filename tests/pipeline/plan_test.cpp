@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "libatlas/core/atomic_file.h"
+#include "libatlas/files/atomic_file.h"
 #include "libatlas/pipeline/export_world.h"
 #include "tests/pipeline/lit_scene.h"
 #include "tests/support/shapes.h"

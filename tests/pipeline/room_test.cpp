@@ -47,13 +47,13 @@ class Room : public ::testing::Test {
 TEST_F(Room, LooksLikeTheSceneAndTheCoarserMeshToo) {
   const TempFolder folder;
   const Fidelity fine = judge(folder, false), coarse = judge(folder, true);
-  EXPECT_GE(fine.psnr, 51);
+  EXPECT_GE(fine.psnr, 50);
   EXPECT_GE(coarse.psnr, fine.psnr - 2);
   EXPECT_LE(coarse.triangles_out, 120000u);
   for (const Fidelity& f : {fine, coarse}) {
-    // The 99th percentile of what is seen depends on where the cameras stand.
+    // The hot spot over the lamp burns out, so the 99th percentile of what is seen is beyond white.
     EXPECT_GE(f.white, 0.8);
-    EXPECT_LE(f.white, 1.5);
+    EXPECT_LE(f.white, 3);
     // Rays that pass between two triangles of either mesh; there is no crack.
     EXPECT_LE(f.miss, 5e-6);
   }

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "libatlas/core/file_extension.h"
+#include "libatlas/files/file_extension.h"
 #include "libatlas/pipeline/export_world.h"
 #include "libatlas/scene/reader.h"
 #include "tests/pipeline/lit_scene.h"

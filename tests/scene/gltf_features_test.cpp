@@ -73,12 +73,16 @@ TEST(Gltf, TellsWhereAViewerBegins) {
   const double half = std::sqrt(0.5);
   g.j["nodes"].push_back(
       {{"camera", 1}, {"translation", {0, 3, 0}}, {"rotation", {0, half, 0, half}}});
-  g.j["scenes"][0]["nodes"] = {0, 2, 3};
+  g.j["nodes"].push_back({{"camera", 1}, {"name", "above"}, {"translation", {0, 5, 0}}});
+  g.j["scenes"][0]["nodes"] = {0, 2, 3, 5};
   const auto loaded = load_glb(folder, g);
   ASSERT_TRUE(loaded.ok()) << loaded.status().message();
   ASSERT_TRUE(loaded->view);
   EXPECT_EQ(loaded->view->position, (Vec3d{1, 6, 0}));
   EXPECT_NEAR(loaded->view->direction.x, -1, 1e-6);
+  ASSERT_EQ(loaded->further_views.size(), 1u);
+  EXPECT_EQ(loaded->further_views[0].name, "above");
+  EXPECT_EQ(loaded->further_views[0].position, (Vec3d{0, 5, 0}));
 }
 
 // KHR_mesh_quantization: the most negative integer also stands for -1.

@@ -68,6 +68,23 @@ TEST(Vrml, TellsWhereAViewerBegins) {
   EXPECT_NEAR(placed->direction.x, -1, 1e-9);
 }
 
+TEST(Vrml, ListsFurtherViews) {
+  const TempFolder folder;
+  const auto loaded = read(folder,
+                           "WorldInfo { info [ \"origin 100 0 0: to be added\" ] }\n"
+                           "Viewpoint { description \"first\" }\n"
+                           "Viewpoint { position 7 7 7 description \"by the door\" }\n"
+                           "Viewpoint { orientation 0 1 0 1.57079632679 }\n" +
+                               shape(0));
+  ASSERT_TRUE(loaded.ok()) << loaded.status().message();
+  EXPECT_EQ(loaded->view->name, "first");
+  ASSERT_EQ(loaded->further_views.size(), 2u);
+  EXPECT_EQ(loaded->further_views[0].name, "by the door");
+  EXPECT_EQ(loaded->further_views[0].position, (Vec3d{107, 7, 7}));
+  EXPECT_EQ(loaded->further_views[1].name, "");
+  EXPECT_NEAR(loaded->further_views[1].direction.x, -1, 1e-9);
+}
+
 // As in other formats, materials of different names are different ones.
 TEST(Vrml, NamesTellMaterialsApart) {
   const TempFolder folder;

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <limits>
 
-#include "libatlas/texture/lanes.h"
+#include "libatlas/core/lanes.h"
 
 namespace atlas {
 namespace {

@@ -14,7 +14,7 @@ constexpr std::uint32_t kLeastPerCell = 3;
 constexpr std::size_t kCellsAHandle = 10, kLeastTriangles = 40;
 
 // In a mesh of that many triangles.
-std::uint32_t triangles_per_cell(std::size_t triangles, const CellOptions& options) {
+std::uint32_t bounded_per_cell(std::size_t triangles, const CellOptions& options) {
   return std::clamp(static_cast<std::uint32_t>(triangles / options.cells_of_small_mesh),
                     std::min(kLeastPerCell, options.triangles_per_cell),
                     options.triangles_per_cell);
@@ -30,7 +30,7 @@ class CellBudget {
 
   std::uint32_t of(std::size_t handles, std::size_t n) const {
     const std::size_t least =
-        n / (options_.each_piece_alone ? triangles_per_cell(n, options_) : triangles_per_cell_);
+        n / (options_.each_piece_alone ? bounded_per_cell(n, options_) : triangles_per_cell_);
     const std::size_t most = std::max(least, n / kLeastTriangles);
     const std::size_t wanted = least + kCellsAHandle * handles;
     return static_cast<std::uint32_t>(
@@ -60,7 +60,7 @@ class CellBudget {
 }  // namespace
 
 std::uint32_t triangles_per_cell(const Topology& topology, const CellOptions& options) {
-  return triangles_per_cell(std::max(options.mesh_triangles, topology.triangle_count()), options);
+  return bounded_per_cell(std::max(options.mesh_triangles, topology.triangle_count()), options);
 }
 
 CellPlan plan_cells(const Topology& topology, const CellOptions& options) {

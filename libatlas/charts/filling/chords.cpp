@@ -96,7 +96,8 @@ class ChordFinder {
     const auto first = std::lower_bound(edges_.begin(), edges_.end(), place, less);
     auto last = first;
     while (last != edges_.end() && last->from == place && last - first < kMostEdges) ++last;
-    return {first, last};
+    return std::span(edges_).subspan(std::size_t(first - edges_.begin()),
+                                     std::size_t(last - first));
   }
 
   // Chooses the corners of the simplified outline, and others between them, so that a chord can end

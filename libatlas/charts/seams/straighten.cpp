@@ -1,6 +1,7 @@
 #include "libatlas/charts/seams/straighten.h"
 
 #include <algorithm>
+#include <compare>
 #include <vector>
 
 #include "libatlas/charts/seams/straighten_pair.h"
@@ -42,7 +43,7 @@ class Straightener {
   struct Border {
     Claims charts;  // smaller, larger
     std::uint32_t half_edge;
-    auto operator<=>(const Border&) const = default;
+    std::strong_ordering operator<=>(const Border&) const = default;
   };
 
   void gather() {

@@ -23,6 +23,10 @@ constexpr double kLongest = 1 << 16;  // the most steps of an edge, so that sums
 constexpr int kHubTriangles = 128;
 constexpr double kNeedle = 16;
 
+// Where more triangles meet, no cut moves one of them: each would walk around all others. A flat
+// fan of so many consists of needles.
+constexpr int kMostAround = 1024;
+
 class PairStraightener {
  public:
   PairStraightener(const SharedBands& shared, const BorderPair& pair, PairScratch& scratch)
@@ -249,6 +253,7 @@ class PairStraightener {
           }
         }
         fans_.push_back(first_of_fan(h));
+        if (fans_.back() == kNoIndex) return false;
       }
     }
     std::sort(fans_.begin(), fans_.end());
@@ -271,15 +276,17 @@ class PairStraightener {
     return side_at(h / 3, after) == s || (o != kNoIndex && side_at(o / 3, after) == s);
   }
   // Returns a name for the fan of triangles around the start of h: its first half-edge in
-  // counter-clockwise order, or the smallest one if the fan is closed.
+  // counter-clockwise order, or the smallest one if the fan is closed; kNoIndex if that is too far
+  // away.
   std::uint32_t first_of_fan(std::uint32_t h) const {
-    std::uint32_t least = h;
-    for (std::uint32_t at = h;;) {
+    std::uint32_t least = h, at = h;
+    for (int count = 0; count < kMostAround; ++count) {
       if (topology_.opposite[at] == kNoIndex) return at;
       at = next_half_edge(topology_.opposite[at]);
       if (at == h) return least;
       least = std::min(least, at);
     }
+    return kNoIndex;
   }
 
   // Returns how many vertices of side s a fan contains: one for each run of triangles on that side.

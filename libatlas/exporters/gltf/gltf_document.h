@@ -11,10 +11,10 @@
 #include <string>
 #include <vector>
 
-#include "libatlas/core/atomic_file.h"
 #include "libatlas/core/status.h"
 #include "libatlas/exporters/gltf/gltf_packing.h"
 #include "libatlas/exporters/world.h"
+#include "libatlas/files/atomic_file.h"
 
 namespace atlas {
 

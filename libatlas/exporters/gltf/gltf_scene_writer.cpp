@@ -9,13 +9,13 @@
 #include <tuple>
 #include <utility>
 
-#include "libatlas/core/file_extension.h"
 #include "libatlas/exporters/gltf/gltf_document.h"
 #include "libatlas/exporters/gltf/gltf_textures.h"
 #include "libatlas/exporters/writing/far_origin.h"
 #include "libatlas/exporters/writing/scene_parts.h"
 #include "libatlas/exporters/writing/scene_writers.h"
 #include "libatlas/exporters/writing/unify_vertices.h"
+#include "libatlas/files/file_extension.h"
 #include "libatlas/scene/building/losses.h"
 
 namespace atlas {

@@ -5,7 +5,6 @@
 #include <optional>
 #include <utility>
 
-#include "libatlas/core/file_extension.h"
 #include "libatlas/core/glm_bridge.h"
 #include "libatlas/exporters/gltf/gltf_document.h"
 #include "libatlas/exporters/viewing/camera.h"
@@ -15,6 +14,7 @@
 #include "libatlas/exporters/writing/page_sides.h"
 #include "libatlas/exporters/writing/scene_writers.h"
 #include "libatlas/exporters/writing/unify_vertices.h"
+#include "libatlas/files/file_extension.h"
 #include "libatlas/scene/files/file_bytes.h"
 #include "libatlas/scene/scene.h"
 

@@ -7,7 +7,6 @@
 #include <string>
 #include <string_view>
 
-#include "libatlas/core/file_extension.h"
 #include "libatlas/exporters/gltf_kept/gltf_data.h"
 #include "libatlas/exporters/gltf_kept/gltf_kept_instances.h"
 #include "libatlas/exporters/gltf_kept/gltf_kept_materials.h"
@@ -17,6 +16,7 @@
 #include "libatlas/exporters/gltf_kept/gltf_kept_unit.h"
 #include "libatlas/exporters/writing/scene_writers.h"
 #include "libatlas/exporters/writing/unify_vertices.h"
+#include "libatlas/files/file_extension.h"
 
 namespace atlas {
 namespace fs = std::filesystem;

@@ -7,8 +7,8 @@
 #include <string_view>
 #include <utility>
 
-#include "libatlas/core/file_extension.h"
 #include "libatlas/exporters/writing/scene_writers.h"
+#include "libatlas/files/file_extension.h"
 #include "libatlas/image/file_kind.h"
 #include "libatlas/scene/files/decode_uri.h"
 #include "libatlas/scene/gltf/gltf_check.h"

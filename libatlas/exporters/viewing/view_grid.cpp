@@ -14,6 +14,8 @@ constexpr double kMostAlong = 1024;  // of the longest side, which bounds the sa
 // Nor are cells so fine that the surface has more squares of their size than this: each of them
 // takes about two samples.
 constexpr double kMostSquares = 1e6;
+// What lies across itself again and again, as noise does, gets cells coarser than asked for.
+constexpr double kMostSquaresOfNoise = 8e6;
 constexpr double kSampleDistance = 0.7;  // cells
 constexpr int kLeastRows = 8;            // of samples, unless the triangle is shorter, see mark()
 // A cell whose triangles face both ways has a front on either side. Their normals cancel, up to
@@ -36,7 +38,9 @@ ViewGrid::ViewGrid(std::span<const Vec3f> positions, std::span<const std::uint32
     area += glm::length(glm::cross(b - a, c - a)) / 2;
   }
   const glm::dvec3 size = box_.size();
-  const double coarsest = std::max({size.x, size.y, size.z}) / std::clamp(options.cells, 8, 512);
+  const double coarsest =
+      std::max(std::max({size.x, size.y, size.z}) / std::clamp(options.cells, 8, 512),
+               std::sqrt(area / kMostSquaresOfNoise));
   choose_cells(coarsest,
                std::max(kCellMetres / options.metres_per_unit, std::sqrt(area / kMostSquares)));
   wall_of_.assign(std::size_t(n_[0]) * n_[1] * n_[2], kEmpty);

@@ -26,6 +26,11 @@ class WeightMap {
   void add(const Mask& mask, BitPage::Place at, std::int32_t weight);
   void sum();
 
+  // Returns the columns of kColumn cells that the strip consists of, about what sum() looks at.
+  std::uint64_t words() const {
+    return std::uint64_t(width_) * std::uint64_t(stride_) / std::uint64_t(kColumn);
+  }
+
   // The lightest of a column of places, and the lowest of equally light ones.
   struct Lightest {
     std::int32_t weight = 0;

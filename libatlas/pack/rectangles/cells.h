@@ -9,9 +9,9 @@ namespace atlas::pack {
 
 // Maps the user's texels to the packer's cells. An item, with its padding to the right and above,
 // takes whole cells. The page gains one padding, since none is needed at its far edges.
-class Cells {
+class AlignedCells {
  public:
-  explicit Cells(const PackOptions& o) : options_(o) {
+  explicit AlignedCells(const PackOptions& o) : options_(o) {
     origin_ = (o.border + o.alignment - 1) / o.alignment * o.alignment;
   }
 

@@ -36,7 +36,7 @@ Extent used_cells(const Problem& problem, const Layout& layout) {
 
 // Enlarges `used`, the texels that are used of a page, so that it holds an item and the border.
 void enclose(const Placement& at, Extent item, const PackOptions& options, Extent& used) {
-  const Cells cells(options);
+  const AlignedCells cells(options);
   if (at.rotated) std::swap(item.width, item.height);
   used = {std::max(used.width, cells.texel(at.x) + item.width + options.border),
           std::max(used.height, cells.texel(at.y) + item.height + options.border)};
@@ -182,7 +182,8 @@ class ShapeSolver {
   // Packs a strip by `pack`, a function from a problem to a layout.
   template <class Pack>
   Layout pack_strip(Strip strip, const Pack& pack) const {
-    const StripProblem tried(problem_, strip, Cells(options_).page((1 << 30) - options_.padding));
+    const StripProblem tried(problem_, strip,
+                             AlignedCells(options_).page((1 << 30) - options_.padding));
     Layout layout = pack(tried.problem());
     tried.turn_back(layout);
     pull_in(problem_, layout);

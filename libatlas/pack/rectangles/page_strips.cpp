@@ -53,8 +53,8 @@ double area_wanted(const Problem& problem) {
 
 // Adds the upright strips of which the pages' width is a power of two, if that is not far from the
 // widths between `narrow` and `wide`. Returns whether there are any.
-bool add_powers(const Direction& direction, std::pair<double, double> range, const Cells& cells,
-                std::vector<Strip>& strips) {
+bool add_powers(const Direction& direction, std::pair<double, double> range,
+                const AlignedCells& cells, std::vector<Strip>& strips) {
   bool any = false;
   for (std::int32_t texels = 1; texels <= (1 << 29); texels *= 2) {
     const std::int32_t width = cells.page(texels);
@@ -98,7 +98,7 @@ void add_usual_strips(const Problem& problem, const PackOptions& options,
   const Direction &upright = both[0], &lying = both[1];
   const double width = std::max<double>(upright.least, std::min(side, area / lying.least));
   if (options.power_of_two &&
-      add_powers(upright, {width, std::max(side, width)}, Cells(options), strips))
+      add_powers(upright, {width, std::max(side, width)}, AlignedCells(options), strips))
     return;
   if (upright.least <= side && lying.least <= side) {
     const std::size_t count = strips.empty() ? 5 : 3;

@@ -49,11 +49,16 @@ bool SceneBuilder::may_read(const std::filesystem::path& named, const std::strin
   return false;
 }
 
-void SceneBuilder::take_view(const Vec3d& position, const Vec3d& direction) {
+void SceneBuilder::take_view(const Vec3d& position, const Vec3d& direction, std::string name) {
+  constexpr std::size_t kMostViews = 100;  // more than a menu shows
   const double length = glm::length(to_glm(direction));
   const Vec3d p = position;
-  if (view || !std::isfinite(p.x + p.y + p.z + length) || length == 0) return;
-  view = {position, from_glm(to_glm(direction) / length)};
+  if (!std::isfinite(p.x + p.y + p.z + length) || length == 0) return;
+  FileView taken{position, from_glm(to_glm(direction) / length), std::move(name)};
+  if (!view)
+    view = std::move(taken);
+  else if (further_views.size() < kMostViews)
+    further_views.push_back(std::move(taken));
 }
 
 std::int32_t SceneBuilder::texture_of(const std::filesystem::path& texture_file,
@@ -399,6 +404,7 @@ Result<LoadedScene> SceneBuilder::finish(const ReadOptions& options, const Conte
   scene.vertex_opacity = std::move(vertex_opacity);
   scene.lightmap = std::move(lightmap);
   loaded.view = view;
+  loaded.further_views = std::move(further_views);
   loaded.defects = std::move(defects);
   if (context.cancelled()) return Status::cancelled();
   return loaded;

@@ -105,6 +105,7 @@ class SceneBuilder {
   std::vector<std::filesystem::path> other_files;
   UvPages uv_pages;              // what the file says of the pages of its uvs
   std::optional<FileView> view;  // LoadedScene::view
+  std::vector<FileView> further_views;
 
   // What the next faces belong to.
   std::uint32_t material = 0, object = 0;
@@ -126,7 +127,7 @@ class SceneBuilder {
 
   // Takes where a viewer is and where it looks, unless there is such a view already, or it is none
   // of finite numbers. The direction may have any length.
-  void take_view(const Vec3d& position, const Vec3d& direction);
+  void take_view(const Vec3d& position, const Vec3d& direction, std::string name);
 
   // Returns the index of this file's texture, which all that ask for it share. `place` says where
   // it is asked for; the first one is kept for messages.

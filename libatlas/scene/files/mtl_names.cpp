@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <string>
 
-#include "libatlas/core/file_extension.h"
 #include "libatlas/core/small_letters.h"
+#include "libatlas/files/file_extension.h"
 
 namespace atlas {
 namespace fs = std::filesystem;

@@ -6,7 +6,7 @@
 #include <limits>
 #include <string_view>
 
-#include "libatlas/core/parse_number.h"
+#include "libatlas/files/parse_number.h"
 
 namespace atlas {
 

@@ -148,7 +148,9 @@ class GltfParser {
   void take_camera(const tinygltf::Node& node, const glm::dmat4& matrix) {
     if (node.camera < 0 || std::size_t(node.camera) >= model_.cameras.size()) return;
     if (model_.cameras[std::size_t(node.camera)].type != "perspective") return;
-    builder_.take_view(from_glm(glm::dvec3(matrix[3])), from_glm(-glm::dvec3(matrix[2])));
+    const std::string& own = model_.cameras[std::size_t(node.camera)].name;
+    builder_.take_view(from_glm(glm::dvec3(matrix[3])), from_glm(-glm::dvec3(matrix[2])),
+                       own.empty() ? node.name : own);
   }
 
   Status add_instances(const tinygltf::Node& node, const glm::dmat4& matrix, GltfPlace place,

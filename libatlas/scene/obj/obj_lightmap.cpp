@@ -3,7 +3,7 @@
 #include <string>
 #include <utility>
 
-#include "libatlas/core/parse_number.h"
+#include "libatlas/files/parse_number.h"
 
 namespace atlas {
 

@@ -187,14 +187,23 @@ class VrmlParser : VrmlScanner {
   void viewpoint(const glm::dmat4& matrix) {
     glm::dvec3 position(0, 0, 10);
     glm::dvec4 turn(0, 0, 1, 0);
+    std::string_view description;
     fields([&](std::string_view name) {
+      if (name == "description") return description = next(), true;
       if (name == "position") return position = glm::dvec3(row(3)), true;
       if (name == "orientation") return turn = row(4), true;
       return false;
     });
     const glm::dmat4 axes = matrix * rotation(turn);
     builder_.take_view(from_glm(glm::dvec3(matrix * glm::dvec4(position, 1))),
-                       from_glm(-glm::dvec3(axes[2])));
+                       from_glm(-glm::dvec3(axes[2])), unquoted(description));
+  }
+
+  // Returns a string without its quotes.
+  static std::string unquoted(std::string_view token) {
+    if (token.starts_with('"')) token.remove_prefix(1);
+    if (token.ends_with('"')) token.remove_suffix(1);
+    return std::string(token);
   }
 
   // The children of a Transform may come before its translation, rotation and scale, so they are
@@ -367,6 +376,8 @@ class VrmlParser : VrmlScanner {
   void finish() {
     for (Vec3d& p : builder_.positions) p = from_glm(origin_ + to_glm(p));
     if (auto& view = builder_.view) view->position = from_glm(origin_ + to_glm(view->position));
+    for (FileView& view : builder_.further_views)
+      view.position = from_glm(origin_ + to_glm(view.position));
     finish_colours();
     builder_.check_positions(
         [&](std::size_t i) { return fmt::format("{}: vertex {}", builder_.file, i); });

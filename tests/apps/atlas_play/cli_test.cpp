@@ -37,6 +37,15 @@ TEST_F(AtlasPlay, WithoutTriangles) {
   expect_one_line(run("absent.obj --headless -q"), "absent.obj");
 }
 
+TEST_F(AtlasPlay, ScenesOfStrangersStayInTheirFolder) {
+  fs::create_directories(dir_ / "scene");
+  std::ofstream(dir_ / "secret.mtl") << "newmtl a\nKd 1 0 0\n";
+  std::ofstream(dir_ / "scene/s.obj")
+      << "mtllib ../secret.mtl\nusemtl a\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
+  EXPECT_EQ(run("scene/s.obj --headless --software -q --screenshot s.png").exit_code, 0);
+  expect_one_line(run("scene/s.obj --headless --software -q --confine"), "leave out --confine");
+}
+
 TEST_F(AtlasPlay, AbsurdOptions) {
   for (const std::string option :
        {"--width 0",     "--width 1.5", "--fov nan",         "--ambient nan",    "--exposure 0",

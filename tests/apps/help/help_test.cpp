@@ -30,12 +30,17 @@ Names options_in(const std::string& text, const std::regex& names) {
   return found;
 }
 
-Names of_help(const std::string& command) {
+std::string help_of(const std::string& command) {
   std::string text;
   FILE* pipe = ::popen((command + " --help").c_str(), "r");
   char buffer[4096];
   while (const std::size_t n = std::fread(buffer, 1, sizeof buffer, pipe)) text.append(buffer, n);
   EXPECT_EQ(::pclose(pipe), 0);
+  return text;
+}
+
+Names of_help(const std::string& command) {
+  const std::string text = help_of(command);
   // Names begin the line, with commas between them. Versions of CLI11 indent them differently.
   return options_in(text, std::regex("^ +((?:--?[A-Za-z0-9-]+(?:, *)?)+)"));
 }
@@ -58,6 +63,28 @@ TEST(Help, ThePageOfProgramsNamesEveryOption) {
     pack.merge(of_help(ATLAS_PACK + std::string(command)));
   EXPECT_EQ(of_page("atlas-pack"), pack);
   EXPECT_GT(pack.size(), 20u);
+}
+
+// Each is a command, and below it what it does.
+TEST(Help, EndsWithThreeExamplesOfItsOwnOptions) {
+  const std::string pack = ATLAS_PACK;
+  for (const std::string& command : {std::string(ATLAS_EXPORT), std::string(ATLAS_PLAY), pack,
+                                     pack + " rects", pack + " images", pack + " mesh"}) {
+    SCOPED_TRACE(command);
+    const std::string help = help_of(command);
+    const std::size_t begin = help.find("\nExamples:\n");
+    ASSERT_NE(begin, std::string::npos);
+    const std::string examples = help.substr(begin);
+    const std::regex line("\n  (atlas-[^\n]+)\n      [A-Z][^\n]+");
+    const std::sregex_iterator first(examples.begin(), examples.end(), line), none;
+    EXPECT_EQ(std::distance(first, none), 3);
+    if (command == pack) continue;  // whose commands have the options
+    const Names known =
+        options_in(help.substr(0, begin), std::regex("^ +((?:--?[A-Za-z0-9-]+(?:, *)?)+)"));
+    for (auto i = first; i != none; ++i)
+      for (const std::string& option : options_in((*i)[1], std::regex("(.*)")))
+        EXPECT_TRUE(known.count(option)) << option;
+  }
 }
 
 }  // namespace

@@ -5,6 +5,7 @@ import json
 import math
 import pathlib
 import random
+import re
 import subprocess
 import sys
 import tempfile
@@ -50,7 +51,8 @@ def points_of(file, count):
 
 
 def light_of(place, front):
-    """Returns the room's illuminance and reflectance at a place on the face with this front."""
+    """Returns the room's illuminance and reflectance at a place on the face with this front, and what
+    a mesh may have there whose squares are cut along either diagonal."""
     best = None
     for corner, u, v, material in room.faces():
         normal = room.cross(u, v)
@@ -62,7 +64,8 @@ def light_of(place, front):
                      for side in (u, v))
         agrees = sum(x * n for x, n in zip(front, normal)) > 0
         if within and agrees and (best is None or off < best[0]):
-            best = (off, room.illuminance(place, normal), getattr(room, material.upper()))
+            best = (off, room.illuminance(place, normal), getattr(room, material.upper()),
+                    room.interpolated(place, corner, u, v, normal))
     return best[1:]
 
 
@@ -83,22 +86,47 @@ class TheFile(unittest.TestCase):
         white = json.load(open(self.path / 'report.json'))['light']['white']
         square = 0
         for place, front, page, uv in points_of(file, POINTS):
-            light, reflectance = light_of(place, front)
+            light, reflectance, _ = light_of(place, front)
             want = [encode(min(1, light * r / white)) for r in reflectance]
             got = file.images[page].at(*uv)
             square += sum((w - g / 255) ** 2 for w, g in zip(want, got)) / 3
         self.assertGreater(-10 * math.log10(square / POINTS), 40)
         self.assertEqual(list(self.path.glob('*.png')), [])  # they are in the page
 
+    def test_a_scan_becomes_a_page_as_the_documents_say(self):
+        text = (pathlib.Path(__file__).parents[3] / 'docs/formats.md').read_text()
+        command = re.search(r'^build/apps/atlas-export/atlas-export (scan.ply .*)$', text, re.M)[1]
+        grey, corners = (40, 130, 220), ((0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0))
+        with open(self.path / 'scan.ply', 'w') as ply:
+            ply.write('ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\n'
+                      'property float z\nproperty uchar red\nproperty uchar green\nproperty uchar blue\n'
+                      'element face 2\nproperty list uchar int vertex_indices\nend_header\n')
+            ply.write(''.join(f'{x} {y} {z} {grey[0]} {grey[1]} {grey[2]}\n' for x, y, z in corners))
+            ply.write('3 0 1 2\n3 0 2 3\n')
+        subprocess.run([EXPORT, *command.split(), *PNG, '-q'], cwd=self.path, check=True)
+        file = page_file.PageFile(self.path / 'scan.html')
+        for _, _, page, uv in points_of(file, 50):
+            for got, want in zip(file.images[page].at(*uv), grey):
+                self.assertLess(abs(got - want), 1.5)
+
     def test_pages_of_light_hold_it(self):
         file = page_file.PageFile(export(self.path, '--linear'))
-        errors = []
+        report = json.load(open(self.path / 'report.json'))
+        white = report['light']['white']
+        shown = lambda colour: encode(min(1, luma(colour) / white))
+        errors, reported = [], []
         for place, front, page, uv in points_of(file, POINTS):
-            light, reflectance = light_of(place, front)
-            want = luma([light * r for r in reflectance])
-            errors.append(abs(luma(file.images[page].at(*uv)) / want - 1))
+            light, reflectance, inputs = light_of(place, front)
+            got = file.images[page].at(*uv)
+            errors.append(abs(luma(got) / luma([light * r for r in reflectance]) - 1))
+            reported.append(min(abs(shown(got) - shown([i * r for r in reflectance])) for i in inputs))
         errors.sort()
+        reported.sort()
         self.assertLess(errors[int(0.95 * POINTS)], 0.03)
+        # The luminance is as near the input's as the report says, and the step of its code.
+        error = report['error']
+        self.assertLess(reported[int(0.95 * POINTS)], 1.2 * error['p95'] + 0.0005)
+        self.assertLess(reported[-1], 1.2 * error['max'] + 0.0005)
         self.assertEqual(list(self.path.glob('*.light')), [])
 
 
@@ -180,12 +208,32 @@ class InTheBrowser(unittest.TestCase):
         off = []
         for hit in hits:
             image = file.images[hit['page']].at(hit['u'], hit['v'])
-            light, reflectance = light_of(hit['position'], hit['normal'])
+            light, reflectance, _ = light_of(hit['position'], hit['normal'])
             want = luma([c / r for c, r in zip(image, reflectance)])
             self.assertLess(abs(hit['value'] / want - 1), 0.02)
             off.append(abs(hit['value'] / light - 1))
         self.assertLess(sorted(off)[int(0.95 * POINTS)], 0.03)
         self.expect_silence(self.linear)
+
+    def test_offers_the_views_of_the_file(self):
+        folder = pathlib.Path(self.folder.name) / 'views'
+        folder.mkdir()
+        world = folder / 'views.wrl'
+        subprocess.run([EXPORT, room.write(folder), '-o', world, '--charts-only', '-q'], check=True)
+        with open(world, 'a') as file:
+            file.write('Viewpoint { position 1 1.2 4 orientation 0 1 0 1.5707963 description "Corner" }\n'
+                       'Viewpoint { position 2 1.6 3 }\n')
+        target = folder / 'views.html'
+        subprocess.run([EXPORT, world, '-o', target, '-q'], check=True)
+        self.open(target)
+        places = self.page.value("[...document.querySelectorAll('#places option')].map((o) => o.text)")
+        self.assertEqual(places[2:4], ['Corner', 'Viewpoint 3'])
+        self.page.value("document.getElementById('places').value = '1'; "
+                        "document.getElementById('places').dispatchEvent(new Event('change'))")
+        eye, ahead = self.page.value('[libatlas.viewer.motion.eye, libatlas.viewer.motion.ahead()]')
+        for got, want in zip(eye + ahead, (1, 1.2, 4, -1, 0, 0)):
+            self.assertAlmostEqual(got, want, delta=1e-3)
+        self.expect_silence(target)
 
     def test_exposure_and_false_colours_change_the_picture(self):
         self.open(self.linear)

@@ -35,6 +35,28 @@ def cross(a, b):
     return (a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0])
 
 
+def steps(u, v):
+    """Returns how many squares a face has along its sides."""
+    return [max(1, math.ceil(math.sqrt(sum(x * x for x in side)) / 0.125)) for side in (u, v)]
+
+
+def interpolated(place, corner, u, v, normal):
+    """Returns what the triangles of a face hold at a place, for either diagonal of their squares."""
+    d = [x - c for x, c in zip(place, corner)]
+    counts = steps(u, v)
+    cells, rests = [], []
+    for side, count in zip((u, v), counts):
+        at = count * sum(x * y for x, y in zip(d, side)) / sum(y * y for y in side)
+        cells.append(min(max(int(at), 0), count - 1))
+        rests.append(at - cells[-1])
+    light = lambda i, j: illuminance([c + (cells[0] + i) / counts[0] * a + (cells[1] + j) / counts[1] * b
+                                      for c, a, b in zip(corner, u, v)], normal)
+    (s, t), p, q, r, w = rests, light(0, 0), light(1, 0), light(1, 1), light(0, 1)
+    one = (1 - s) * p + (s - t) * q + t * r if s > t else (1 - t) * p + (t - s) * w + s * r
+    other = (1 - s - t) * p + s * q + t * w if s + t < 1 else (s + t - 1) * r + (1 - t) * q + (1 - s) * w
+    return one, other
+
+
 def write(folder):
     """Writes room.obj and room.mtl. Returns the path."""
     vertices, lines = [], ['mtllib room.mtl']
@@ -42,7 +64,7 @@ def write(folder):
         normal = cross(u, v)
         size = math.sqrt(sum(x * x for x in normal))
         normal = [x / size for x in normal]
-        counts = [max(1, math.ceil(math.sqrt(sum(x * x for x in side)) / 0.125)) for side in (u, v)]
+        counts = steps(u, v)
         first = len(vertices) + 1
         for j in range(counts[1] + 1):
             for i in range(counts[0] + 1):

@@ -14,6 +14,8 @@ class Viewer {
     this.quantities = quantitiesOf(world);
     this.views = viewsOf(world, this.renderer);
     this.places = [{text: 'Start', go: () => this.motion.reset()},
+      ...world.viewpoints.map((place, i) => (
+        {text: place.name || `Viewpoint ${i + 2}`, go: () => this.goToView(place)})),
       {text: 'From outside', go: () => this.motion.goOutside([-0.75, -0.5, -0.55])},
       {text: 'From above', go: () => this.motion.goOutside([0, -1, -0.01])}];
     this.measuring = new Measuring(this);
@@ -195,6 +197,12 @@ class Viewer {
     this.places[index].go();
     this.controls.showMode(this.motion.mode);
     this.changed();
+  }
+
+  // A view of the scene's file: in rooms the eyes stay where it puts them.
+  goToView(place) {
+    this.motion.setMode(this.world.inside ? 'fly' : 'orbit');
+    this.motion.setView(place.position, place.direction);
   }
 
   expose(stops) {
