@@ -108,32 +108,42 @@ class Assembler {
     for (const std::uint32_t t : left) place_degenerate(t, around);
   }
 
-  // Lays a triangle without area on corners of its polygon. Returns false if the polygon has no
-  // other triangle with one of its vertices.
+  // Lays a triangle without area on an edge of another triangle of its polygon, or else on a
+  // vertex. Returns false if no triangle of the polygon has one.
   bool place_with_polygon(std::uint32_t t) {
     if (topology_.polygon.empty()) return false;
     if (by_polygon_.empty()) list_polygons();
-    const std::uint32_t* const v = &topology_.corner_vertex[3 * std::size_t{t}];
-    const std::uint32_t none = kNoIndex;
-    std::array<std::uint32_t, 3> uv{none, none, none};
-    std::uint32_t first = none;  // a corner that they share
     const auto mates = std::equal_range(by_polygon_.begin(), by_polygon_.end(),
-                                        std::pair(topology_.polygon[t], none), by_first);
-    for (auto mate = mates.first; mate != mates.second; ++mate) {
-      if (!placed(mate->second)) continue;
-      for (std::uint32_t h = 3 * mate->second; h < 3 * mate->second + 3; ++h) {
-        for (std::uint32_t c = 0; c < 3; ++c) {
-          if (uv[c] != none || topology_.corner_vertex[h] != v[c]) continue;
-          if (first == none) first = h;
-          if (set_.triangle_chart[h / 3] == set_.triangle_chart[first / 3]) uv[c] = uv_at(h);
+                                        std::pair(topology_.polygon[t], kNoIndex), by_first);
+    for (const bool edge : {true, false}) {
+      for (auto mate = mates.first; mate != mates.second; ++mate) {
+        if (!placed(mate->second) || material(mate->second) != material(t)) continue;
+        for (std::uint32_t h = 3 * mate->second; h < 3 * mate->second + 3; ++h) {
+          const std::uint32_t a = topology_.corner_vertex[h];
+          const std::uint32_t b = edge ? topology_.corner_vertex[next_half_edge(h)] : a;
+          if ((edge && a == b) || !has_vertex(t, a) || !has_vertex(t, b)) continue;
+          lay_on(t, h, edge);
+          return true;
         }
       }
     }
-    if (first == none) return false;
-    set_.triangle_chart[t] = set_.triangle_chart[first / 3];
-    for (std::uint32_t c = 0; c < 3; ++c)
-      set_.triangle_uv[topology_.input_corner(3 * t + c)] = uv[c] == none ? uv_at(first) : uv[c];
-    return true;
+    return false;
+  }
+
+  bool has_vertex(std::uint32_t t, std::uint32_t vertex) const {
+    const std::uint32_t* const v = &topology_.corner_vertex[3 * std::size_t{t}];
+    return v[0] == vertex || v[1] == vertex || v[2] == vertex;
+  }
+
+  // Gives the triangle the chart of half-edge h, and places on that edge or at its start.
+  void lay_on(std::uint32_t t, std::uint32_t h, bool edge) {
+    const std::uint32_t at_h = uv_at(h), at_next = uv_at(next_half_edge(h));
+    set_.triangle_chart[t] = set_.triangle_chart[h / 3];
+    for (std::uint32_t i = 3 * t; i < 3 * t + 3; ++i) {
+      const bool other =
+          edge && topology_.corner_vertex[i] == topology_.corner_vertex[next_half_edge(h)];
+      set_.triangle_uv[topology_.input_corner(i)] = other ? at_next : at_h;
+    }
   }
 
   using PolygonTriangle = std::pair<std::uint32_t, std::uint32_t>;
@@ -161,14 +171,7 @@ class Assembler {
         if (edge && a == b) continue;
         const auto found = around.find(key(std::min(a, b), std::max(a, b)));
         if (found == around.end() || material(found->second / 3) != material(t)) continue;
-        const std::uint32_t h = found->second;
-        const std::uint32_t at_h = set_.triangle_uv[topology_.input_corner(h)];
-        const std::uint32_t at_next = set_.triangle_uv[topology_.input_corner(next_half_edge(h))];
-        set_.triangle_chart[t] = set_.triangle_chart[h / 3];
-        for (std::uint32_t i = 0; i < 3; ++i) {
-          const bool other = edge && v[i] == topology_.corner_vertex[next_half_edge(h)];
-          set_.triangle_uv[topology_.input_corner(3 * t + i)] = other ? at_next : at_h;
-        }
+        lay_on(t, found->second, edge);
         return;
       }
     }
