@@ -96,6 +96,14 @@ class MeshUvs(ctypes.Structure):
     ]
 
 
+class Instance(ctypes.Structure):
+    _fields_ = [("page", c_uint32), ("scale", c_float * 2), ("offset", c_float * 2)]
+
+
+class Instances(ctypes.Structure):
+    _fields_ = [("size", c_size_t), ("instance_count", c_size_t), ("instances", c_void_p)]
+
+
 class PolygonUvs(ctypes.Structure):
     _fields_ = [
         ("size", c_size_t),
@@ -217,6 +225,8 @@ STRUCTS: dict[str, type[ctypes.Structure]] = {
     "libatlas_unwrap_options": UnwrapOptions,
     "libatlas_atlas_info": AtlasInfo,
     "libatlas_mesh_uvs": MeshUvs,
+    "libatlas_instance": Instance,
+    "libatlas_instances": Instances,
     "libatlas_polygon_uvs": PolygonUvs,
     "libatlas_charts": Charts,
     "libatlas_transfer_options": TransferOptions,
