@@ -4,9 +4,8 @@ compile one source than build a library.
 Usage: python3 scripts/two_files.py [TARGET_FOLDER]        (out/two_files by default)
 
 The source needs the headers of Eigen, GLM and fmt beside it or installed, and C++20:
-  g++ -std=c++20 -O2 -c libatlas.cpp -I eigen3
-The header has the C++ and the C interface; a C compiler sees the latter alone. libatlas's namespaces
-of third-party code and its floating-point options are set in the source.
+  g++ -std=c++20 -O2 -ffp-contract=off -c libatlas.cpp -I eigen3
+The header has the C++ and the C interface; a C compiler sees the latter alone.
 """
 import pathlib
 import re
@@ -126,8 +125,7 @@ def main():
         own = renamed(INCLUDE.sub("", text), clashing, suffix)
         parts.append(f"{before}\n// ---- {name} ----\n\n{own.strip()}\n")
     source = (notice() + "\n#define Eigen atlas_eigen\n#define EIGEN_DONT_VECTORIZE\n#define EIGEN_MPL2_ONLY\n#ifndef FMT_HEADER_ONLY\n"
-              "#define FMT_HEADER_ONLY\n#endif\n#define LIBATLAS_C_BUILT\n"
-              "#if defined(__GNUC__) && !defined(__clang__)\n#pragma GCC optimize(\"fp-contract=off\")\n#elif defined(__clang__)\n#pragma STDC FP_CONTRACT OFF\n#endif\n\n"
+              "#define FMT_HEADER_ONLY\n#endif\n#define LIBATLAS_C_BUILT\n\n"
               '#include "libatlas.h"\n' + "".join(parts))
     (target / "libatlas.cpp").write_text(source)
     print(f"{target / 'libatlas.h'}: {header.count(chr(10))} lines")

@@ -1,6 +1,7 @@
 // libatlas in browsers; node.js is the same for Node.
 import { compile } from "./lib/compile.js";
 import { Library } from "./lib/library.js";
+import { portOf } from "./lib/web-port.js";
 import { WorkerLibrary } from "./lib/worker-library.js";
 
 export { BadInputError, BadOptionError, CancelledError, InternalError, LibatlasError, NoSolutionError, OutOfMemoryError, UnsupportedError } from "./lib/errors.js";
@@ -16,14 +17,4 @@ export async function load({ wasm = address() } = {}) {
 export async function startWorker({ wasm = address(), worker } = {}) {
   const start = worker ?? (() => new Worker(new URL("./worker.js", import.meta.url), { type: "module" }));
   return new WorkerLibrary(() => portOf(start()), await compile(wasm));
-}
-
-function portOf(worker) {
-  return {
-    post: (message) => worker.postMessage(message),
-    listen: (callback) => (worker.onmessage = ({ data }) => callback(data)),
-    fail: (callback) => (worker.onerror = callback),
-    busy() {},
-    terminate: () => worker.terminate(),
-  };
 }

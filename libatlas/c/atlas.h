@@ -5,8 +5,8 @@
 // that were compiled with an earlier header keep working, and so do those compiled with a later one
 // as long as they do not use what is new. What is passed in gets its size and its defaults from the
 // function with its name and _init, as in libatlas_mesh_init(&mesh, sizeof mesh). What is handed
-// out only needs the size: uvs.size = sizeof uvs. Structs that lie in arrays have no size, and stay
-// as they are.
+// out only needs the size: uvs.size = sizeof uvs. Structs that lie in arrays have no size, and
+// stay as they are.
 //
 // Errors: calls that can fail return a status. They change nothing then, and write null or 0 to
 // what they would have returned. libatlas_message() has one line of text that names the element and
@@ -263,8 +263,8 @@ LIBATLAS_API libatlas_status libatlas_get_instances(libatlas_context* context,
 typedef struct libatlas_polygon_uvs {
   size_t size;
   size_t polygon_count, corner_count;  // 0 of a mesh of triangles
-  const uint32_t*
-      corners;  // 1 a corner, in the mesh's order: into the vertices of libatlas_mesh_uvs
+  // 1 a corner, in the mesh's order: into the vertices of libatlas_mesh_uvs.
+  const uint32_t* corners;
   const uint32_t* triangle_polygon;  // 1 a triangle of libatlas_mesh_uvs
   size_t cut_count;
   const uint32_t* cut_polygons;  // ascending

@@ -30,6 +30,22 @@ Status check_polygons(const libatlas_mesh& mesh) {
                       mesh.polygon_count, mesh.polygon_sizes ? "given" : "null")};
 }
 
+// Checks the arguments, calls add(mesh), and hands out the number of the mesh.
+template <class Add>
+libatlas_status add_to(libatlas_context* context, libatlas_atlas* atlas, const libatlas_mesh* mesh,
+                       std::uint32_t* number, const Add& add) {
+  if (number) *number = 0;
+  return run_call(context, [&]() -> Status {
+    if (!atlas) return null("atlas");
+    libatlas_mesh own;
+    if (Status s = take_struct(mesh, "libatlas_mesh", own); !s.ok()) return s;
+    if (Status s = check_polygons(own); !s.ok()) return s;
+    const Result<std::uint32_t> added = add(own);
+    if (added.ok() && number) *number = *added;
+    return added.status();
+  });
+}
+
 }  // namespace
 }  // namespace atlas::c
 
@@ -53,32 +69,18 @@ void libatlas_atlas_destroy(libatlas_atlas* atlas) {
 libatlas_status libatlas_add_instances(libatlas_context* context, libatlas_atlas* atlas,
                                        const libatlas_mesh* mesh, const float* densities,
                                        size_t count, uint32_t* number) {
-  if (number) *number = 0;
-  return atlas::c::run_call(context, [&]() -> atlas::Status {
-    if (!atlas) return atlas::c::null("atlas");
-    libatlas_mesh own;
-    if (auto s = atlas::c::take_struct(mesh, "libatlas_mesh", own); !s.ok()) return s;
-    if (auto s = atlas::c::check_polygons(own); !s.ok()) return s;
+  return atlas::c::add_to(context, atlas, mesh, number, [&](const libatlas_mesh& own) {
     std::vector<float> products;
     for (std::size_t i = 0; densities && i < count; ++i)
       products.push_back(densities[i] * own.density);
     if (!densities && own.density != 1 && count > 0) products.assign(count, own.density);
-    const auto added = atlas->atlas.add_instances(atlas::c::strided_mesh(own), count, products);
-    if (added.ok() && number) *number = *added;
-    return added.status();
+    return atlas->atlas.add_instances(atlas::c::strided_mesh(own), count, products);
   });
 }
 
 libatlas_status libatlas_add_mesh(libatlas_context* context, libatlas_atlas* atlas,
                                   const libatlas_mesh* mesh, uint32_t* number) {
-  if (number) *number = 0;
-  return atlas::c::run_call(context, [&]() -> atlas::Status {
-    if (!atlas) return atlas::c::null("atlas");
-    libatlas_mesh own;
-    if (auto s = atlas::c::take_struct(mesh, "libatlas_mesh", own); !s.ok()) return s;
-    if (auto s = atlas::c::check_polygons(own); !s.ok()) return s;
-    const auto added = atlas->atlas.add(atlas::c::strided_mesh(own), own.density);
-    if (added.ok() && number) *number = *added;
-    return added.status();
+  return atlas::c::add_to(context, atlas, mesh, number, [&](const libatlas_mesh& own) {
+    return atlas->atlas.add(atlas::c::strided_mesh(own), own.density);
   });
 }

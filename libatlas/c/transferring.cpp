@@ -1,4 +1,7 @@
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <vector>
 
 #include "libatlas/c/objects.h"
 #include "libatlas/c/structs.h"

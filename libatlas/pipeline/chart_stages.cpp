@@ -63,10 +63,7 @@ Result<ChartSet> cut_charts(ExportJob& job, const SceneLight* light) {
   ExportReport& report = job.report;
   report_charts(*charts, report);
   report.light_seam_length = seams.length;
-  report.surface_area = charts->surface_area;
-  report.repairs = charts->repairs;
-  report.noise = charts->noise;
-  report.chart_timing = charts->timing;
+  report_making(*charts, report);
   std::string quality = fmt::format("L2 {:.4f}, 99.9 % {:.3f}", charts->distortion.stretch_l2,
                                     charts->distortion.stretch_999);
   if (job.options.charts.keep_uv_charts) {

@@ -40,4 +40,24 @@ void report_charts(const ChartSet& charts, ExportReport& report) {
   report.seam_length = charts.seam_length;
 }
 
+void report_making(const ChartSet& charts, ExportReport& report) {
+  report.surface_area = charts.surface_area;
+  report.repairs = charts.repairs;
+  report.noise = charts.noise;
+  report.chart_timing = charts.timing;
+}
+
+void report_placements(std::span<const ChartPlacement> placements, ExportReport& report) {
+  for (const ChartPlacement& p : placements) {
+    report.chart_pages.push_back(p.page);
+    report.chart_densities.push_back((p.texels_per_unit.x + p.texels_per_unit.y) / 2);
+  }
+}
+
+void report_plain_pages(std::span<const Extent> pages, std::span<const ChartPlacement> placements,
+                        ExportReport& report) {
+  for (const Extent& page : pages) report.pages.push_back({"", page.width, page.height, 0, 0});
+  for (const ChartPlacement& p : placements) ++report.pages[std::size_t(p.page)].charts;
+}
+
 }  // namespace atlas

@@ -3,6 +3,7 @@
 
 #include <functional>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "libatlas/charts/charts.h"
@@ -56,5 +57,15 @@ struct PackedCharts {
 
 // Reports the charts. Must be called again whenever charts were cut.
 void report_charts(const ChartSet& charts, ExportReport& report);
+
+// Reports how they were made, once.
+void report_making(const ChartSet& charts, ExportReport& report);
+
+// Reports the page and the density of each chart.
+void report_placements(std::span<const ChartPlacement> placements, ExportReport& report);
+
+// Reports pages without images, and how many charts lie on each.
+void report_plain_pages(std::span<const Extent> pages, std::span<const ChartPlacement> placements,
+                        ExportReport& report);
 
 }  // namespace atlas

@@ -192,27 +192,17 @@ class MeshUnwrapper {
   MeshUvsOfScene out_;
 };
 
-void report_unwrapped(const UnwrappedMesh& all, double metres_per_unit, ExportReport& report) {
-  report.charts = all.charts.charts;
-  report.distortion = all.charts.distortion;
-  report.seam_length = all.charts.seam_length;
-  report.surface_area = all.charts.surface_area;
-  report.repairs = all.charts.repairs;
-  report.noise = all.charts.noise;
-  report.chart_timing = all.charts.timing;
+void report_unwrapped(const UnwrappedMesh& all, ExportReport& report) {
+  report_charts(all.charts, report);
+  report_making(all.charts, report);
   report.utilization = report.uv_utilization = all.utilization;
   report.written_stretch_999 = all.charts.distortion.stretch_999;
   report.thin_triangles = all.thin_triangles;
   report.texels_drawn_twice = all.texels_drawn_twice;
   report.gaps = all.gaps;
   report.opened_charts = all.gaps.charts;
-  report.metres_per_unit = metres_per_unit;
-  for (const Extent& page : all.pages) report.pages.push_back({"", page.width, page.height, 0, 0});
-  for (const ChartPlacement& p : all.placements) {
-    ++report.pages[std::size_t(p.page)].charts;
-    report.chart_pages.push_back(p.page);
-    report.chart_densities.push_back((p.texels_per_unit.x + p.texels_per_unit.y) / 2);
-  }
+  report_plain_pages(all.pages, all.placements, report);
+  report_placements(all.placements, report);
 }
 
 }  // namespace
@@ -222,7 +212,7 @@ Result<MeshUvsOfScene> unwrap_meshes_once(ExportJob& job) {
   Result<MeshUvsOfScene> made = MeshUnwrapper(job.scene, job.options, context).run();
   if (!made.ok()) return made;
   ExportReport& report = job.report;
-  report_unwrapped(made->all, job.scene.metres_per_unit, report);
+  report_unwrapped(made->all, report);
   report.triangles_out = job.scene.triangle_count();
   job.record.finish({report.triangles_out, report.charts.size(), "charts",
                      fmt::format("L2 {:.4f}, {:.0f} % used by charts", report.distortion.stretch_l2,

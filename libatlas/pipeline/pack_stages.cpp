@@ -90,10 +90,7 @@ void report_layout(ExportJob& job, const ChartSet& charts, const PageLayout& lay
   report.utilization = layout.utilization;
   report.uv_utilization = layout.uv_utilization;
   report.outlines = layout.outlines;
-  for (const ChartPlacement& p : layout.placements) {
-    report.chart_pages.push_back(p.page);
-    report.chart_densities.push_back((p.texels_per_unit.x + p.texels_per_unit.y) / 2);
-  }
+  report_placements(layout.placements, report);
   std::string quality = fmt::format("scale {:.3f}, {:.0f} % used by charts", report.scale,
                                     100 * layout.uv_utilization);
   if (charts.charts.size() > uncut) quality += fmt::format(", cut into {}", charts.charts.size());
@@ -128,9 +125,7 @@ Result<PackedCharts> pack_plain(ExportJob& job, ChartSet charts) {
       lay_out_plain(job, layout_options(charts, job.options, false), charts, context);
   if (!layout.ok()) return layout.status();
   report.scale = layout->scale;
-  for (const Extent& page : layout->pages)
-    report.pages.push_back({"", page.width, page.height, 0, 0});
-  for (const ChartPlacement& p : layout->placements) ++report.pages[std::size_t(p.page)].charts;
+  report_plain_pages(layout->pages, layout->placements, report);
   report_layout(job, charts, *layout, uncut);
   return PackedCharts{std::move(charts), {}, std::move(*layout)};
 }

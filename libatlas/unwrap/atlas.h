@@ -70,9 +70,9 @@ class UnwrappedAtlas {
   std::size_t mesh_of_chart(std::size_t chart) const;
 
   // All meshes: their pages, charts and placements (of an instanced mesh, those of its first
-  // instance), and what was measured. Triangles and vertices
-  // are numbered through, in the order of the meshes, except in `indices` and `vertices`, which are
-  // those of mesh(i), one mesh after the other.
+  // instance), and what was measured. Triangles and vertices are numbered through, in the order of
+  // the meshes, except in `indices` and `vertices`, which are those of mesh(i), one mesh after the
+  // other.
   const UnwrappedMesh& all() const { return all_; }
 
  private:

@@ -7,6 +7,7 @@
 
 #include "libatlas/c/atlas.h"
 #include "libatlas/unwrap/transfer.h"
+#include "tests/c/c_fixture.h"
 #include "tests/support/shape_view.h"
 
 namespace atlas::test {
@@ -17,10 +18,7 @@ class CTransfer : public testing::Test {
   void SetUp() override {
     ASSERT_EQ(libatlas_atlas_create(context_, &atlas_), LIBATLAS_OK);
     for (const Shape& shape : shapes_) {
-      libatlas_mesh mesh;
-      libatlas_mesh_init(&mesh, sizeof mesh);
-      mesh.positions = shape.positions.data(), mesh.position_count = shape.positions.size();
-      mesh.indices = shape.indices.data(), mesh.index_count = shape.indices.size();
+      const libatlas_mesh mesh = mesh_of(shape);
       ASSERT_EQ(libatlas_add_mesh(context_, atlas_, &mesh, nullptr), LIBATLAS_OK);
     }
     libatlas_unwrap_options options;

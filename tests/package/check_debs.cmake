@@ -2,15 +2,8 @@
 # database of its own, calls what is there, and removes them again.
 cmake_minimum_required(VERSION 3.22)
 file(REMOVE_RECURSE ${OUT})
-function(run)
-  execute_process(COMMAND ${ARGV} WORKING_DIRECTORY ${BUILD} RESULT_VARIABLE result OUTPUT_VARIABLE output
-                  ERROR_VARIABLE errors)
-  if(NOT result EQUAL 0)
-    list(JOIN ARGV " " command)
-    message(FATAL_ERROR "${command}\nfailed (${result}):\n${output}${errors}")
-  endif()
-  set(output "${output}" PARENT_SCOPE)
-endfunction()
+include(${CMAKE_CURRENT_LIST_DIR}/run.cmake)
+set(RUN_IN ${BUILD})
 
 run(cpack -G DEB -B ${OUT}/packages)
 file(GLOB packages ${OUT}/packages/*.deb)

@@ -2,14 +2,7 @@
 # LIBRARY_PROGRAM, the same program linked to the library, both are compiled and run, and every bit is
 # compared, for each of the compilers in COMPILERS; else the syntax is checked.
 cmake_minimum_required(VERSION 3.22)
-function(run)
-  execute_process(COMMAND ${ARGV} RESULT_VARIABLE result OUTPUT_VARIABLE output ERROR_VARIABLE errors)
-  if(NOT result EQUAL 0)
-    list(JOIN ARGV " " command)
-    message(FATAL_ERROR "${command}\nfailed (${result}):\n${output}${errors}")
-  endif()
-  set(output "${output}" PARENT_SCOPE)
-endfunction()
+include(${CMAKE_CURRENT_LIST_DIR}/run.cmake)
 
 run(${PYTHON} ${SOURCE}/scripts/two_files.py ${OUT})
 file(WRITE ${OUT}/header_alone.c "#include \"libatlas.h\"\nint main(void) { return (int)(libatlas_version() == 0); }\n")

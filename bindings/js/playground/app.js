@@ -1,6 +1,7 @@
 // The page: opens files, unwraps them in a worker whenever an option changes, and shows the result.
 import { compile } from "../lib/compile.js";
 import { fans, readObj } from "./obj.js";
+import { portOf } from "../lib/web-port.js";
 import { WorkerLibrary } from "../lib/worker-library.js";
 import { fileOfMesh, primitivesOf, readGlb, withResults } from "./glb.js";
 import { sampleMesh } from "./sample.js";
@@ -20,13 +21,7 @@ function startWorker() {
   const address = URL.createObjectURL(new Blob([byId("worker").textContent], { type: "text/javascript" }));
   const worker = new Worker(address);
   URL.revokeObjectURL(address);
-  return {
-    post: (message) => worker.postMessage(message),
-    listen: (callback) => (worker.onmessage = ({ data }) => callback(data)),
-    fail: (callback) => (worker.onerror = callback),
-    busy() {},
-    terminate: () => worker.terminate(),
-  };
+  return portOf(worker);
 }
 
 const library = inlinedWasm().then(compile).then((module) => new WorkerLibrary(startWorker, module));

@@ -103,8 +103,9 @@ void keep_polygons_whole(const Topology& topology, const LocalChart& chart,
     std::size_t begin = 0, end = 0;
     std::uint8_t part = 0;
   } spare;
+  std::vector<double> area(1 + std::size_t(*std::max_element(parts.begin(), parts.end())));
   for (std::size_t begin = 0, end = 0; begin < order.size(); begin = end) {
-    std::array<double, 256> area{};
+    std::fill(area.begin(), area.end(), 0);
     for (; end < order.size() && polygon(order[end]) == polygon(order[begin]); ++end)
       area[parts[order[end]]] += topology.areas[triangles[order[end]]];
     const auto most = std::max_element(area.begin(), area.end());

@@ -4,18 +4,13 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <glm/gtc/quaternion.hpp>
 #include <glm/mat4x4.hpp>
 #include <iterator>
-#include <limits>
-#include <map>
 #include <set>
-#include <span>
 #include <string>
-#include <tuple>
 
 #include "libatlas/core/glm_bridge.h"
 #include "libatlas/scene/building/formats.h"
@@ -23,7 +18,7 @@
 #include "libatlas/scene/files/text_scanner.h"
 #include "libatlas/scene/vrml/vrml_appearance.h"
 #include "libatlas/scene/vrml/vrml_scanner.h"
-#include "libatlas/scene/vrml/vrml_shape.h"
+#include "libatlas/scene/vrml/vrml_shapes.h"
 
 namespace atlas {
 namespace fs = std::filesystem;
@@ -47,13 +42,6 @@ glm::dmat4 rotation(const glm::dvec4& axis_and_angle) {
 bool is_group(std::string_view type) {
   return type == "Transform" || type == "Group" || type == "Collision" || type == "Anchor" ||
          type == "Billboard";
-}
-
-// Materials with the same key are the same in all that is read.
-auto key_of(const RawMaterial& m) {
-  return std::tuple(m.name, m.texture, m.wrap_u, m.wrap_v, m.uv_u, m.uv_v, m.opacity,
-                    m.double_sided, m.unlit, m.diffuse.x, m.diffuse.y, m.diffuse.z, m.emission.x,
-                    m.emission.y, m.emission.z);
 }
 
 class VrmlParser : VrmlScanner {
@@ -276,60 +264,7 @@ class VrmlParser : VrmlScanner {
       });
       return true;
     });
-    if (!has_faces) return;
-    if (!result.colours.empty()) take_colours(result, material);
-    if (material.texture >= 0 && result.uvs.empty()) add_default_uvs(result);
-    material.double_sided = !result.solid;
-    result.material = material_of(std::move(material));
-    const std::size_t base = builder_.positions.size();
-    for (const Vec3d& p : result.points) {
-      const glm::dvec3 q = glm::dvec3(matrix * glm::dvec4(to_glm(p), 1));
-      builder_.positions.push_back(from_glm(q));
-    }
-    if (!result.colours.empty()) {
-      builder_.illumination.resize(base, kNoColour);
-      builder_.illumination.insert(builder_.illumination.end(), result.colours.begin(),
-                                   result.colours.end());
-    }
-    bases_.push_back({base, builder_.texcoords.size(), glm::determinant(glm::dmat3(matrix)) < 0});
-    builder_.texcoords.insert(builder_.texcoords.end(), result.uvs.begin(), result.uvs.end());
-    result.points = {};
-    result.colours = {};
-    shapes_.push_back(std::move(result));
-  }
-
-  // Colours take the place of that of the material.
-  void take_colours(VrmlShape& shape, RawMaterial& material) {
-    give_points_colours(shape);
-    material.diffuse = {1, 1, 1};
-  }
-
-  // Sets points without a colour to 0 in a scene where others have one.
-  void finish_colours() {
-    if (builder_.illumination.empty()) return;
-    builder_.illumination.resize(builder_.positions.size(), kNoColour);
-    for (std::size_t i = 0; i < builder_.illumination.size(); ++i) {
-      if (!std::isnan(builder_.illumination[i].x)) continue;
-      builder_.illumination[i] = {};
-      builder_.defects.add(DefectKind::illumination_missing,
-                           [&] { return fmt::format("{}: vertex {}", builder_.file, i); });
-    }
-  }
-
-  // Returns the index of a material that is the same in all that is read. Those of different names
-  // are kept apart, as in other formats.
-  std::uint32_t material_of(RawMaterial&& material) {
-    const auto next = static_cast<std::uint32_t>(builder_.materials.size());
-    const auto [at, is_new] = material_ids_.try_emplace(key_of(material), next);
-    if (!is_new) return at->second;
-    if (material.name.empty()) material.name = fmt::format("material{}", next);
-    if (!is_reflectance(material.diffuse)) {
-      builder_.defects.add(DefectKind::reflectance_beyond_one, [&] {
-        return fmt::format("{}: material '{}'", builder_.file, material.name);
-      });
-    }
-    builder_.materials.push_back(std::move(material));
-    return next;
+    if (has_faces) shapes_.add(std::move(result), std::move(material), matrix);
   }
 
   void face_set(VrmlShape& shape) {
@@ -378,75 +313,14 @@ class VrmlParser : VrmlScanner {
     if (auto& view = builder_.view) view->position = from_glm(origin_ + to_glm(view->position));
     for (FileView& view : builder_.further_views)
       view.position = from_glm(origin_ + to_glm(view.position));
-    finish_colours();
-    builder_.check_positions(
-        [&](std::size_t i) { return fmt::format("{}: vertex {}", builder_.file, i); });
-    for (std::size_t i = 0; i < shapes_.size(); ++i) {
-      if (context_.cancelled()) return;  // so says SceneBuilder::finish()
-      const double done = double(i) / double(shapes_.size());
-      context_.report("reading", kScanned + (1 - kScanned) * done);
-      add_faces(shapes_[i], i);
-      shapes_[i] = {};
-    }
+    shapes_.add_faces(kScanned, context_);
   }
-
-  void add_faces(const VrmlShape& shape, std::size_t number) {
-    builder_.material = shape.material;
-    builder_.object = static_cast<std::uint32_t>(number);
-    builder_.objects.push_back(fmt::format("shape{}", number));
-    const Base& base = bases_[number];
-    const auto& own = shape.uv_corners.empty() ? shape.corners : shape.uv_corners;
-    const bool textured = !shape.uvs.empty();
-    std::vector<std::int64_t> vertices, uvs;
-    std::size_t face = 0;
-    for (std::size_t k = 0; k <= shape.corners.size(); ++k) {
-      if (k < shape.corners.size() && shape.corners[k] != -1) {
-        // An index beyond its own list must not reach into the next shape's.
-        const std::size_t points = base.points(builder_, bases_, number);
-        vertices.push_back(index(shape.corners[k], points, base.position));
-        const std::int32_t uv = textured && k < own.size() ? own[k] : kNoIndex;
-        uvs.push_back(index(uv, shape.uvs.size(), base.texcoord));
-        continue;
-      }
-      if (vertices.empty()) continue;
-      if (base.mirrored != shape.clockwise) {
-        std::reverse(vertices.begin(), vertices.end());
-        std::reverse(uvs.begin(), uvs.end());
-      }
-      builder_.add_face(
-          {vertices, std::span<const std::int64_t>(uvs).first(textured ? uvs.size() : 0)},
-          [&] { return fmt::format("{}: shape {} face {}", builder_.file, number, face); });
-      ++face;
-      vertices.clear();
-      uvs.clear();
-    }
-  }
-
-  static std::int64_t index(std::int32_t value, std::size_t count, std::size_t base) {
-    return value >= 0 && std::size_t(value) < count ? value + std::int64_t(base) : -1;
-  }
-
-  struct Base {
-    std::size_t position = 0, texcoord = 0;
-    bool mirrored = false;
-
-    std::size_t points(const SceneBuilder& builder, const std::vector<Base>& all,
-                       std::size_t number) const {
-      const std::size_t end =
-          number + 1 < all.size() ? all[number + 1].position : builder.positions.size();
-      return end - position;
-    }
-  };
-
-  static constexpr Vec3f kNoColour{std::numeric_limits<float>::quiet_NaN(), 0, 0};
 
   SceneBuilder& builder_;
   const Context& context_;
   glm::dvec3 origin_{0};
   std::set<std::string> unread_;  // what would have shown something
-  std::vector<VrmlShape> shapes_;
-  std::vector<Base> bases_;
-  std::map<decltype(key_of({})), std::uint32_t> material_ids_;
+  VrmlShapes shapes_{builder_};
 };
 
 }  // namespace
