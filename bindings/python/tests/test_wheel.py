@@ -33,7 +33,7 @@ def wheel(tmp_path_factory):
     before = resource.getrusage(resource.RUSAGE_CHILDREN)
     environment = dict(os.environ, CMAKE_CXX_COMPILER_LAUNCHER="env")  # not ccache, which would hide the work
     pip = [folder / "build/bin/python", "-m", "pip", "wheel", "--no-deps", "-w", folder, PACKAGE]
-    run([*pip, "-C", f"build-dir={folder}/tree"], env=environment)
+    run([*pip, f"--config-settings=build-dir={folder}/tree"], env=environment)  # -C is of later versions of pip
     after = resource.getrusage(resource.RUSAGE_CHILDREN)
     (path,) = folder.glob("*.whl")
     return path, after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
@@ -48,7 +48,7 @@ def test_one_wheel_for_every_python(wheel):
     with zipfile.ZipFile(wheel[0]) as files:
         names = set(files.namelist())
     sources = {f"libatlas/{path.name}" for path in (PACKAGE / "src/libatlas").glob("*.py*") if path.is_file()}
-    assert {name for name in names if name.startswith("libatlas/")} == sources | {"libatlas/libatlasgeo-c.so"}
+    assert {name for name in names if name.startswith("libatlas/")} == sources | {"libatlas/py.typed", "libatlas/libatlasgeo-c.so"}
 
 
 def test_the_library_needs_the_c_library_only(wheel, tmp_path):
