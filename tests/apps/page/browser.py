@@ -64,7 +64,8 @@ class Browser:
         end = time.time() + 60
         while time.time() < end:
             if os.path.exists(path):
-                lines = open(path).read().split()
+                with open(path) as file:
+                    lines = file.read().split()
                 if len(lines) >= 2:
                     with urllib.request.urlopen(f'http://127.0.0.1:{lines[0]}/json') as answer:
                         for target in json.load(answer):
@@ -91,19 +92,28 @@ class Browser:
         if method == 'Network.requestWillBeSent':
             self.requests.append(message['params']['request']['url'])
 
-    def open(self, path, width=1280, height=800, phone=False):
-        """Opens a file as a double click does. Returns the seconds until the first picture."""
+    def load(self, url, width=1280, height=800, phone=False):
+        """Begins to load a page."""
         self.log.clear()
         self.requests.clear()
         self.call('Emulation.setDeviceMetricsOverride', width=width, height=height, deviceScaleFactor=1,
                   mobile=phone)
         self.call('Emulation.setTouchEmulationEnabled', enabled=phone)
-        start = time.time()
-        self.call('Page.navigate', url='file://' + os.path.abspath(path))
-        while not self.value('Boolean(window.libatlas && libatlas.viewer && libatlas.viewer.frames)'):
-            if self.log:
-                raise RuntimeError(f'{path}: {self.log}')
+        self.call('Page.navigate', url=url)
+
+    def wait_for(self, expression, seconds=120):
+        """Waits until an expression of JavaScript is true."""
+        end = time.time() + seconds
+        while not self.value(f'Boolean({expression})'):
+            if self.log or time.time() > end:
+                raise RuntimeError(f'{expression} stays false: {self.log}')
             time.sleep(0.02)
+
+    def open(self, path, width=1280, height=800, phone=False):
+        """Opens a file as a double click does. Returns the seconds until the first picture."""
+        start = time.time()
+        self.load('file://' + os.path.abspath(path), width, height, phone)
+        self.wait_for('window.libatlas && libatlas.viewer && libatlas.viewer.frames')
         first = time.time() - start
         self.value('libatlas.ready.then(() => true)')
         return first
