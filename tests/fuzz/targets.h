@@ -49,7 +49,8 @@ FuzzResult fuzz_export(FuzzBytes bytes, const std::string& extension);
 
 // Unwraps a small mesh, and judges the atlas with the tests' own measures. Bytes 0 and 1 choose
 // options, bytes 2 to 4 the kind of mesh, its size and how materials alternate; vertices follow,
-// then triangles as three bytes each. Charts must be made in time.
+// then triangles as three bytes each. They are taken as polygons or as instances, too. Charts must
+// be made in time.
 FuzzResult fuzz_unwrap(FuzzBytes bytes);
 
 }  // namespace atlas::test

@@ -1,5 +1,7 @@
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <span>
 #include <vector>
 
 #include "libatlas/unwrap/atlas.h"
@@ -212,6 +214,59 @@ FuzzResult fuzz_polygons(const Mesh& mesh, const UnwrapOptions& options, const C
   return {judge(triangles, flat->all(), options.charts), true};
 }
 
+// Instances lie on the page, apart from each other.
+std::string judge_instances(std::span<const MeshInstance> instances, std::size_t count,
+                            const std::vector<Extent>& pages) {
+  if (instances.size() != count) return "instances were lost";
+  for (std::size_t i = 0; i < count; ++i) {
+    const MeshInstance& a = instances[i];
+    const Vec2f end{a.offset.x + a.scale.x, a.offset.y + a.scale.y};
+    if (a.page >= pages.size() || !(a.scale.x > 0 && a.scale.y > 0) ||
+        !(a.offset.x >= 0 && a.offset.y >= 0 && end.x <= 1 + 1e-6f && end.y <= 1 + 1e-6f))
+      return "an instance outside its page";
+    for (std::size_t k = 0; k < i; ++k) {
+      const MeshInstance& b = instances[k];
+      const auto shared = [&](float from, float to, float first, float last) {
+        return std::min(to, last) - std::max(from, first) > 1e-6f;
+      };
+      if (a.page == b.page && shared(a.offset.x, end.x, b.offset.x, b.offset.x + b.scale.x) &&
+          shared(a.offset.y, end.y, b.offset.y, b.offset.y + b.scale.y))
+        return "two instances overlap";
+    }
+  }
+  return {};
+}
+
+// What `choice` says in place of bytes, which other input has used up: up to six instances with
+// densities of which some are none.
+FuzzResult fuzz_instances(const MeshView& view, unsigned choice, const UnwrapOptions& options,
+                          const Context& context) {
+  const float values[] = {1,
+                          0.25f,
+                          4,
+                          1e-30f,
+                          0,
+                          -1,
+                          std::numeric_limits<float>::quiet_NaN(),
+                          std::numeric_limits<float>::infinity()};
+  std::vector<float> densities(choice % 7);
+  for (std::size_t i = 0; i < densities.size(); ++i)
+    densities[i] = values[(choice >> i) % (choice & 8 ? 8 : 3)];
+  const bool valid = !densities.empty() && std::ranges::all_of(densities, [](float d) {
+    return std::isfinite(d) && d > 0;
+  });
+  Atlas atlas;
+  const auto added = atlas.add_instances(view, densities.size(), densities);
+  if (added.ok() != valid) return {"densities taken wrongly: " + added.status().message()};
+  if (!valid) return {"", atlas.mesh_count() == 0};
+  const Result<UnwrappedAtlas> flat = atlas.unwrap(options, context);
+  if (!flat.ok()) {
+    const bool too_small = flat.status().code() == ErrorCode::no_solution;
+    return {too_small ? "" : "refused: " + flat.status().message()};
+  }
+  return {judge_instances(flat->mesh(0).instances, densities.size(), flat->all().pages), true};
+}
+
 }  // namespace
 
 FuzzResult fuzz_unwrap(FuzzBytes data) {
@@ -231,6 +286,7 @@ FuzzResult fuzz_unwrap(FuzzBytes data) {
   Context context;
   context.threads = 1;
   if (more & 32) return fuzz_polygons(mesh, options, context);
+  if (more & 64) return fuzz_instances(view, choice, options, context);
   const Effort effort;  // of charts alone: packing has other bounds
   const Result<ChartSet> charts = make_charts(view, options.charts, context);
   if (std::string much = effort.fault(mesh.indices.size() / 3); !much.empty()) return {much};
