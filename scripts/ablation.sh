@@ -1,7 +1,7 @@
 #!/bin/sh
-# The ablation bench: measures what each constant of charts and packing is worth (hours; it can be
+# The ablation bench: measures what each step and constant of charts and packing is worth (hours; it can be
 # ended, and goes on where it was), and writes docs/generated/ablation.md.
-# Usage: scripts/ablation.sh run [--rows REGEX] [--minutes N] [--half checking] | table
+# Usage: scripts/ablation.sh run [--rows REGEX] [--draws N] [--minutes N] [--half checking] | table
 # LIBATLAS_SKIP_DEPS=1 leaves the system's packages alone.
 set -eu
 cd "$(dirname "$0")/.."

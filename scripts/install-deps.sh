@@ -19,7 +19,7 @@ test_packages="
   libgtest-dev libbenchmark-dev libcgal-dev libcoin-dev xvfb xauth pngcheck gnuplot-nox valgrind
   libgl1-mesa-dri libegl1 abigail-tools python3"
 # Not every release has these. Tests that need them are skipped there.
-test_packages_if_any="view3dscene chromium python3-websocket clang-format emscripten nodejs
+test_packages_if_any="view3dscene chromium python3-websocket clang-format clang-tidy emscripten nodejs
   python3-numpy python3-pytest python3-matplotlib"
 windows_packages="g++-mingw-w64-x86-64-posix wine64 googletest"
 

@@ -11,4 +11,5 @@ file(GLOB_RECURSE tuned_inputs CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/libatlas/
      ${PROJECT_SOURCE_DIR}/libatlas/pack/* ${PROJECT_SOURCE_DIR}/libatlas/unwrap/*)
 list(FILTER tuned_inputs INCLUDE REGEX "[.](h|cpp)$")
 set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${tuned_inputs}
-  ${PROJECT_SOURCE_DIR}/benchmarks/ablation/instrument.py ${PROJECT_SOURCE_DIR}/benchmarks/ablation/fixed_constants.txt)
+  ${PROJECT_SOURCE_DIR}/benchmarks/ablation/instrument.py ${PROJECT_SOURCE_DIR}/benchmarks/ablation/fixed_constants.txt
+  ${PROJECT_SOURCE_DIR}/benchmarks/ablation/rules.txt)

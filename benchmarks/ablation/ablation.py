@@ -3,10 +3,11 @@
   scripts/ablation.sh run [--rows REGEX] [--minutes N]   measures rows that are not measured yet
   scripts/ablation.sh table                              writes docs/generated/ablation.{md,json}
 
-A row is a constant that is halved or doubled, or a rule (a constant of type bool) that is left out.
-It is measured on the deciding half of the set (even members of each family), in draws whose vertices
-are moved by 0.1 % of an edge. A row that changes no bit of the first members is not measured further.
---half checking measures the other half, to confirm a whole change.
+A row is a constant that is halved or doubled, or a rule (a step of rules.txt, or a constant of type
+bool) that is left out. It is measured on the deciding half of the set (even members of each family),
+in draws whose vertices are moved by 0.1 % of an edge. A row that changes no bit of the first members
+is not measured further. --half checking measures the other half, to confirm a whole change. The table
+keeps rows that another version of the code has written, until they are measured again.
 """
 import argparse
 import hashlib
@@ -19,7 +20,7 @@ import subprocess
 import sys
 import time
 
-MEMBERS, DRAWS, SCREENED = 14, 3, 2
+MEMBERS, SCREENED = 14, 2
 TIMEOUT = 600  # seconds a row may take
 # figure, whether more of it is worse, and whether it is compared as a ratio
 FIGURES = [("charts", True, True), ("seam", True, True), ("visible_smooth", True, True),
@@ -64,9 +65,9 @@ def changes_of(constants):
 class Store:
     """Results as files, one a row, so that a run can be ended and goes on where it was."""
 
-    def __init__(self, folder, program, half):
+    def __init__(self, folder, program, half, draws):
         digest = hashlib.sha256(pathlib.Path(program).read_bytes()).hexdigest()[:12]
-        self.folder = folder / f"{half}-{digest}"
+        self.folder = folder / f"{half}-{draws}-{digest}"
         self.folder.mkdir(parents=True, exist_ok=True)
 
     def path(self, change):
@@ -88,7 +89,7 @@ class Store:
 
 def run(args, program, constants, store):
     first = 0 if args.half == "deciding" else 1
-    whole = (first, 2, MEMBERS, DRAWS)
+    whole = (first, 2, MEMBERS, args.draws)
     screen = (first, 2, SCREENED, 1)
     plain = store.load("")
     if plain is None:
@@ -130,7 +131,7 @@ def compare(plain, changed):
                 values.append(math.log(b / a))
         mean = sum(values) / len(values)
         spread = math.sqrt(sum((v - mean) ** 2 for v in values) / max(1, len(values) - 1) / len(values))
-        result[figure] = (mean, spread)
+        result[figure] = (round(mean, 6), round(spread, 6))
     result["defects"] = sum(r["defects"] for r in changed.values()) - sum(r["defects"] for r in plain.values())
     return result
 
@@ -142,45 +143,58 @@ def cell(figure, ratio, mean, spread):
     return f"**{text}**" if strong else text
 
 
-def table(args, constants, store):
+def rows_of(args, constants, store):
+    """All rows: what is measured now, and what the last table has of the others."""
     plain = store.load("")
-    if plain is None:
-        sys.exit("nothing is measured yet: begin with `run`")
-    lines, data, quiet, missing = [], [], [], 0
-    for name, change, shown in changes_of(constants):
+    written = args.docs / "ablation.json"
+    rows = {}
+    if written.exists():
+        rows = {row["change"]: row for row in json.loads(written.read_text())["rows"]}
+    known = list(changes_of(constants))
+    rows = {change: rows[change] for _, change, _ in known if change in rows}
+    for name, change, shown in known:
         result = store.load(change)
-        if result is None:
-            missing += 1
-        elif result == "nothing changes":
-            quiet.append((name, shown))
-        elif isinstance(result, str):
-            lines.append(f"| `{name}` | {shown} | {result} |" + " |" * len(FIGURES))
+        if result is None or plain is None:
+            continue
+        rows[change] = {"row": name, "change": change, "shown": shown, "draws": args.draws}
+        if isinstance(result, str):
+            rows[change]["says"] = result
         else:
-            compared = compare(plain, result)
-            cells = [cell(f, ratio, *compared[f]) for f, _, ratio in FIGURES]
-            lines.append(f"| `{name}` | {shown} | " + " | ".join(cells) + f" | {compared['defects']:+d} |")
-            data.append({"constant": name, "change": change, **{f: compared[f] for f, _, _ in FIGURES},
-                         "defects": compared["defects"]})
-    values = {c["name"]: c for c in constants}
-    head = f"""# Ablation
+            rows[change].update(compare(plain, result))
+    return [rows[change] for _, change, _ in known if change in rows], len(known)
 
-What changes if one constant of `charts/`, `param/`, `pack/` or `unwrap/` is halved or doubled, or a rule is left out:
-means over {len({m for m, _ in plain})} generated meshes with {DRAWS} draws each, and their standard errors over meshes; what is
-beyond twice that is bold. Ratios are in per cent, and jag is times 10^3. More is worse, except for page use.
-Written by `scripts/ablation.sh`; [how](../charts-measured.md#ablation).
+
+def table(args, constants, store):
+    rows, known = rows_of(args, constants, store)
+    values = {c["name"]: c["value"] for c in constants}
+    lines, quiet = [], []
+    for row in rows:
+        if row.get("says") == "nothing changes":
+            quiet.append(f"- `{row['row']}` {row['shown']} ({values[row['row']]})")
+            continue
+        cells = [row["says"]] + [""] * len(FIGURES) if "says" in row else [
+            cell(f, ratio, *row[f]) for f, _, ratio in FIGURES] + [f"{row['defects']:+d}"]
+        lines.append(f"| `{row['row']}` | {row['shown']} | {row['draws']} | " + " | ".join(cells) + " |")
+    head = """# Ablation
+
+What changes if a step of `charts/`, `param/`, `pack/` or `unwrap/` is left out, or one of their constants is halved or
+doubled: means over the generated meshes that decide, and their standard errors over meshes; what is beyond twice that
+is bold. Ratios are in per cent, and jag is times 10^3. More is worse, except for page use. Written by
+`scripts/ablation.sh`; [how](../charts-measured.md#ablation).
 
 """
-    text = head + "| constant | change | " + " | ".join(HEADS[f] for f, _, _ in FIGURES) + " | defects |\n"
-    text += "|---" * (len(FIGURES) + 3) + "|\n" + "\n".join(lines) + "\n"
-    text += f"\nNothing changes on the first members of each family ({len(quiet)} rows):\n\n"
-    text += "\n".join(f"- `{name}` {shown} ({values[name]['value']})" for name, shown in quiet) + "\n"
+    text = head + "| row | change | draws | " + " | ".join(HEADS[f] for f, _, _ in FIGURES) + " | defects |\n"
+    text += "|---" * (len(FIGURES) + 4) + "|\n" + "\n".join(lines) + "\n"
+    text += f"\nNothing changes on the first members of each family ({len(quiet)} rows):\n\n" + "\n".join(quiet) + "\n"
     fixed = [c for c in constants if c["fixed"]]
     text += "\nNo rows:\n\n" + "\n".join(f"- `{c['name']}`: {c['fixed']}" for c in fixed) + "\n"
+    missing = known - len(rows)
     if missing:
         text += f"\n{missing} rows are not measured yet.\n"
     (args.docs / "ablation.md").write_text(text)
-    (args.docs / "ablation.json").write_text(json.dumps(data, indent=1) + "\n")
-    print(f"{len(lines)} rows that change something, {len(quiet)} that change nothing, {missing} not measured")
+    lines = ",\n".join(json.dumps(row) for row in rows)
+    (args.docs / "ablation.json").write_text(f'{{"rows": [\n{lines}\n]}}\n')
+    print(f"{len(rows) - len(quiet)} rows that change something, {len(quiet)} that change nothing, {missing} not measured")
 
 
 def main():
@@ -189,12 +203,13 @@ def main():
     parser.add_argument("--build", type=pathlib.Path, required=True, help="the build with LIBATLAS_TUNING")
     parser.add_argument("--docs", type=pathlib.Path, required=True, help="where the table goes")
     parser.add_argument("--half", choices=["deciding", "checking"], default="deciding")
+    parser.add_argument("--draws", type=int, default=3, help="of each mesh (3)")
     parser.add_argument("--rows", default="", help="only constants whose names match")
     parser.add_argument("--minutes", type=float, default=1e9, help="begin no row after that time")
     args = parser.parse_args()
     program = args.build / "benchmarks/ablation/atlas-ablation-measure"
     constants = json.loads((args.build / "tuned/constants.json").read_text())
-    store = Store(args.build / "ablation", program, args.half)
+    store = Store(args.build / "ablation", program, args.half, args.draws)
     if args.what == "run":
         run(args, program, constants, store)
     else:

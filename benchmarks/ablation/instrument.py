@@ -3,9 +3,9 @@ program's environment can change (tuned.h), and a table of them.
 
 Usage: instrument.py SOURCE_ROOT TARGET_FOLDER
 
-Every `constexpr` number of a folder below becomes a row, named after its file and itself. The
-sources that users compile stay as they are. Rows that must be known to the compiler, or that no
-result hangs on, are listed with their reason in fixed_constants.txt.
+Every `constexpr` number of a folder below becomes a row, named after its file and itself, and so does
+every step in rules.txt. The sources that users compile stay as they are. Rows that must be known to
+the compiler, or that no result hangs on, are listed with their reason in fixed_constants.txt.
 """
 import json
 import pathlib
@@ -56,11 +56,22 @@ def split_declarators(rest):
     return parts + [rest[begin:]]
 
 
+def read_rules(text):
+    """Returns {file: [(name, code, code without the step)]}."""
+    rules = {}
+    for line in text.splitlines():
+        if line and not line.startswith("#"):
+            file, name, code, without = (part.strip().replace("\\|", "|")
+                                         for part in re.split(r"(?<!\\)\|", line))
+            rules.setdefault(file, []).append((name, code, without))
+    return rules
+
+
 class File:
-    def __init__(self, path, name, fixed):
+    def __init__(self, path, name, fixed, rules=()):
         self.text = path.read_text()
         self.plain = blank(self.text)
-        self.name, self.fixed, self.rows, self.seen = name, fixed, [], {}
+        self.name, self.fixed, self.rules, self.rows, self.seen = name, fixed, rules, [], {}
 
     def row(self, constant, position, type_name, value):
         count = self.seen[constant] = self.seen.get(constant, 0) + 1
@@ -70,6 +81,21 @@ class File:
                           "value": " ".join(value.split()), "fixed": self.fixed.get(key, "")})
         return key
 
+    def with_rules(self, text):
+        """The text with steps that can be left out."""
+        for name, code, without in self.rules:
+            at = self.text.find(code)
+            if at < 0:
+                sys.exit(f"rules.txt: {self.name} has no `{code}`")
+            key = self.row(name, at, "bool", "true")
+            on = f'::atlas::tuned<bool>("{key}", true)'
+            if code.endswith(";"):
+                changed = f"if ({on}) {{ {code} }} else {{ {without} }}"
+            else:
+                changed = f"({on} ? ({code}) : ({without}))"
+            text = text.replace(code, changed)
+        return text
+
     def instrumented(self):
         out, end = [], 0
         for match in DECLARATION.finditer(self.plain):
@@ -78,7 +104,9 @@ class File:
                 continue
             out += [self.text[end:match.start()], replaced]
             end = match.end()
-        return "".join(out) + self.text[end:] if out else None
+        if not out and not self.rules:
+            return None
+        return self.with_rules("".join(out) + self.text[end:])
 
     def declaration(self, match):
         """The declaration with values that can change, or None if it has no number to change."""
@@ -131,13 +159,14 @@ def main():
         if line and not line.startswith("#"):
             key, reason = line.split(None, 1)
             fixed[key] = reason
+    rules = read_rules((pathlib.Path(__file__).parent / "rules.txt").read_text())
     rows = []
     for folder in FOLDERS:
         for path in sorted((root / "libatlas" / folder).rglob("*")):
             if path.suffix not in (".h", ".cpp"):
                 continue
             name = str(path.relative_to(root / "libatlas"))
-            file = File(path, name, fixed)
+            file = File(path, name, fixed, rules.pop(name, ()))
             text = file.instrumented()
             rows += file.rows
             out = target / "libatlas" / name
@@ -149,6 +178,8 @@ def main():
             if not out.exists() or out.read_text() != text:
                 out.write_text(text)
     (target / "constants.json").write_text(json.dumps(rows, indent=1) + "\n")
+    if rules:
+        sys.exit("rules.txt names files that are not there: " + ", ".join(sorted(rules)))
     unknown = set(fixed) - {row["name"] for row in rows} - {row["name"].rsplit(".", 1)[0] for row in rows}
     if unknown:
         sys.exit("fixed_constants.txt names what is not there: " + ", ".join(sorted(unknown)))
