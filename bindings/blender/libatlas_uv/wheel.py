@@ -36,7 +36,7 @@ def provide():
 
 
 def _of_this_system(wheels):
-    machine = {"AMD64": "x86_64", "aarch64": "aarch64"}.get(platform.machine(), platform.machine())
+    machine = "x86_64" if platform.machine() == "AMD64" else platform.machine()
     wanted = {"win32": ("win_", "amd64" if machine == "x86_64" else machine), "darwin": ("macosx_", machine)}
     system, processor = wanted.get(sys.platform, ("linux_", machine))
     for wheel in wheels:

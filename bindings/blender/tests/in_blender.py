@@ -6,8 +6,8 @@ import math
 import sys
 import unittest
 
+import bpy  # before bmesh, which it brings with it
 import bmesh
-import bpy
 import numpy as np
 
 ZIP = sys.argv[sys.argv.index("--") + 1]

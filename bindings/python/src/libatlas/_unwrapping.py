@@ -122,8 +122,9 @@ class Atlas:
 
         Args:
             threads: how many to use; 0: as many as the machine has.
-            progress: called in this thread with the name of a stage and rising fractions from 0 to 1. Whatever
-                it raises stops the call, and is passed on; so does Ctrl-C in the main thread.
+            progress: called in this thread with the name of a stage and rising fractions from 0 to 1; with the same
+                again where nothing new comes for a tenth of a second. Whatever it raises stops the call, and is passed
+                on; so does Ctrl-C in the main thread.
             options: those of `UnwrapOptions`.
 
         Raises:
