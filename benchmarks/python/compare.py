@@ -43,6 +43,8 @@ def unwrap_and_measure(name: str, mesh: Path, measure: Path, timeout: int, runs:
                 return {"failed": f"exit code {done.returncode}", "output": done.stderr[-400:]}
             run = json.loads(done.stdout.strip().splitlines()[-1])
             told = run if told is None or run["cpu"] < told["cpu"] else told
+        if 0 in told["page"]:
+            return {"failed": "no page"}
         sides = [str(side) for side in told["page"]]
         measured = subprocess.run([measure, "atlas", target, *sides], capture_output=True, text=True, check=True)
         return {**json.loads(measured.stdout), "cpu": told["cpu"], "wall": told["wall"]}
@@ -104,20 +106,22 @@ def main() -> None:
     parser.add_argument("--only", nargs="+", choices=list(UNWRAPPERS), default=list(UNWRAPPERS))
     parser.add_argument("--timeout", type=int, default=300, help="CPU seconds for one mesh (300)")
     parser.add_argument("--runs", type=int, default=1, help="the fastest of so many counts (1)")
-    parser.add_argument("--json", type=Path, help="where all that was measured goes")
+    parser.add_argument("--json", type=Path, help="where all that was measured goes; what it has is not measured again")
     options = parser.parse_args()
     meshes = sorted(options.models.glob("*.obj"))
     if not meshes:
         parser.error(f"{options.models} holds no .obj file")
-    rows: dict[str, dict[str, dict]] = {}
+    rows: dict[str, dict[str, dict]] = json.loads(options.json.read_text()) if options.json and options.json.exists() else {}
     for mesh in meshes:
-        rows[mesh.stem] = {}
+        rows.setdefault(mesh.stem, {})
         for name in options.only:
+            if name in rows[mesh.stem]:
+                continue
             row = unwrap_and_measure(name, mesh, options.measure, options.timeout, options.runs)
             rows[mesh.stem][name] = row
+            if options.json:
+                options.json.write_text(json.dumps(rows, indent=1) + "\n")
             print(f"{mesh.stem}, {name}: {row}", file=sys.stderr, flush=True)
-    if options.json:
-        options.json.write_text(json.dumps(rows, indent=1) + "\n")
     print(summary(rows), table(rows), sep="\n\n")
 
 

@@ -22,7 +22,7 @@ def context():
 
 
 def large_sphere():
-    bpy.ops.mesh.primitive_uv_sphere_add(segments=500, ring_count=300)
+    bpy.ops.mesh.primitive_uv_sphere_add(segments=250, ring_count=150)
     return bpy.context.object
 
 

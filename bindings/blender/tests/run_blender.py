@@ -64,6 +64,8 @@ def main():
     command = [*map(str, in_blender(kind, build)), "--", extension]
     with tempfile.TemporaryDirectory() as folder:  # nothing of the user's Blender is touched
         environment = dict(os.environ, BLENDER_USER_RESOURCES=folder, PYTHONDONTWRITEBYTECODE="1")
+        if kind != "bpy":  # Debian's Blender takes the libraries of the first Python in the path
+            environment["PATH"] = f"{Path(shutil.which('blender')).parent}:{os.environ['PATH']}"
         for name in ("CONFIG", "SCRIPTS", "DATAFILES"):
             environment[f"BLENDER_USER_{name}"] = str(Path(folder, name.lower()))
             Path(folder, name.lower()).mkdir()
