@@ -3,7 +3,7 @@
     pip install -r benchmarks/python/requirements.txt ./bindings/python
     python benchmarks/python/compare.py MODELS --measure build-dev/tests/support/atlas-measure [--json out.json]
 
-Each unwrapping runs in a process of its own, which a timeout ends. What it made is measured by the program of the
+Each unwrapping runs in a process of its own, which may take so many CPU seconds. What it made is measured by the program of the
 tests, atlas-measure, which knows nothing of how it was made. Prints tables in Markdown: one of all meshes together, and
 one line for each.
 """
@@ -13,6 +13,8 @@ from __future__ import annotations
 import argparse
 import json
 import math
+import resource
+import signal
 import subprocess
 import sys
 import tempfile
@@ -23,21 +25,26 @@ sys.path.insert(0, str(HERE))
 from unwrappers import UNWRAPPERS  # noqa: E402
 
 
-def unwrap_and_measure(name: str, mesh: Path, measure: Path, timeout: float, runs: int) -> dict:
+def limit(seconds: int) -> None:
+    resource.setrlimit(resource.RLIMIT_CPU, (seconds, seconds + 5))
+
+
+def unwrap_and_measure(name: str, mesh: Path, measure: Path, timeout: int, runs: int) -> dict:
     """What atlas-measure says, and seconds: the least of the runs. Or {"failed": why}."""
     with tempfile.TemporaryDirectory() as folder:
         target = Path(folder, "out.obj")
         command = [sys.executable, HERE / "unwrappers.py", name, mesh, target]
         told = None
         for _ in range(runs):
-            try:
-                done = subprocess.run(command, capture_output=True, text=True, timeout=timeout, check=False)
-            except subprocess.TimeoutExpired:
-                return {"failed": f"over {timeout:.0f} s"}
+            done = subprocess.run(command, capture_output=True, text=True, check=False, preexec_fn=lambda: limit(timeout))
+            if done.returncode == -signal.SIGXCPU:
+                return {"failed": f"over {timeout} s"}
             if done.returncode != 0:
                 return {"failed": f"exit code {done.returncode}", "output": done.stderr[-400:]}
             run = json.loads(done.stdout.strip().splitlines()[-1])
             told = run if told is None or run["cpu"] < told["cpu"] else told
+        if 0 in told["page"]:
+            return {"failed": "no page"}
         sides = [str(side) for side in told["page"]]
         measured = subprocess.run([measure, "atlas", target, *sides], capture_output=True, text=True, check=True)
         return {**json.loads(measured.stdout), "cpu": told["cpu"], "wall": told["wall"]}
@@ -97,22 +104,24 @@ def main() -> None:
     parser.add_argument("models", type=Path, help="a folder of OBJ files")
     parser.add_argument("--measure", type=Path, required=True, help="the program atlas-measure")
     parser.add_argument("--only", nargs="+", choices=list(UNWRAPPERS), default=list(UNWRAPPERS))
-    parser.add_argument("--timeout", type=float, default=300, help="seconds for one mesh (300)")
+    parser.add_argument("--timeout", type=int, default=300, help="CPU seconds for one mesh (300)")
     parser.add_argument("--runs", type=int, default=1, help="the fastest of so many counts (1)")
-    parser.add_argument("--json", type=Path, help="where all that was measured goes")
+    parser.add_argument("--json", type=Path, help="where all that was measured goes; what it has is not measured again")
     options = parser.parse_args()
     meshes = sorted(options.models.glob("*.obj"))
     if not meshes:
         parser.error(f"{options.models} holds no .obj file")
-    rows: dict[str, dict[str, dict]] = {}
+    rows: dict[str, dict[str, dict]] = json.loads(options.json.read_text()) if options.json and options.json.exists() else {}
     for mesh in meshes:
-        rows[mesh.stem] = {}
+        rows.setdefault(mesh.stem, {})
         for name in options.only:
+            if name in rows[mesh.stem]:
+                continue
             row = unwrap_and_measure(name, mesh, options.measure, options.timeout, options.runs)
             rows[mesh.stem][name] = row
+            if options.json:
+                options.json.write_text(json.dumps(rows, indent=1) + "\n")
             print(f"{mesh.stem}, {name}: {row}", file=sys.stderr, flush=True)
-    if options.json:
-        options.json.write_text(json.dumps(rows, indent=1) + "\n")
     print(summary(rows), table(rows), sep="\n\n")
 
 

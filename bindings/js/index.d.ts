@@ -55,6 +55,8 @@ export interface Mesh {
   /** 1 an instance: its linear density of texels relative to the others, > 0. The mesh is unwrapped once, and each
    * instance gets a place for its uvs. */
   instances?: Numbers;
+  /** 3 a vertex, finite, such as colours: the result has textures that show them. */
+  values?: Numbers;
 }
 
 export type Effort = "fast" | "standard" | "best";
@@ -108,6 +110,8 @@ export interface UnwrapOptions extends Callbacks {
   lightmap?: boolean | { texelsPerMetre?: number; metresPerUnit?: number };
   /** Return the seams of each mesh; default false. */
   seams?: boolean;
+  /** Of textures: samples a texel, 1..64; default 4. */
+  shifts?: number;
 }
 
 export interface Page {
@@ -178,6 +182,9 @@ export interface Unwrapped {
   texelsDrawnTwice: number;
   keptCharts: number;
   reflattenedCharts: number;
+  /** Of meshes with values, 1 a page: 3 a texel, rows from the bottom. Bilinear interpolation of them is as near to the values over
+   * each chart as it can be, in the least squares sense; texels beside charts are filled. */
+  textures?: Float32Array[];
 }
 
 export interface PackOptions extends Callbacks {

@@ -4,7 +4,7 @@ import { BadInputError, CancelledError, InternalError, OutOfMemoryError } from "
 import { Instance } from "./instance.js";
 import { camelCase } from "./structs.js";
 
-const ofCalls = ["lightmap", "seams", "onProgress", "onWarning", "signal"];
+const ofCalls = ["lightmap", "seams", "shifts", "onProgress", "onWarning", "signal"];
 const keptMemory = 256 * 2 ** 20;
 
 export class Library {
@@ -30,7 +30,9 @@ export class Library {
       for (const mesh of list) addMesh(call, atlas, mesh);
       const values = optionValues("unwrap_options", options, ofCalls);
       const unwrapped = call.create("unwrap", "unwrapped_destroy", atlas, unwrapOptions(call, options.lightmap, values));
-      return unwrapResult(call, atlas, unwrapped, list, options.seams);
+      const result = unwrapResult(call, atlas, unwrapped, list, options.seams);
+      if (list.some(({ values }) => values)) result.textures = texturesOf(call, unwrapped, result, list, options.shifts);
+      return result;
     });
   }
 
@@ -147,6 +149,7 @@ export function tightMesh(mesh, number = 0) {
     triangleDensity: floats("triangleDensity", 1),
     polygonSizes: numbers(Uint32Array, mesh.polygonSizes, 1, name("polygonSizes")),
     instances: floats("instances", 1),
+    values: floats("values", 3),
     density: mesh.density ?? 1,
   };
   if (mesh.texcoordIndices != null) {
@@ -163,7 +166,7 @@ function checkLengths(mesh, name) {
   const corners = mesh.indices.length;
   const faces = mesh.polygonSizes?.length ?? Math.floor(corners / 3);
   const positions = mesh.positions.length / 3;
-  const wanted = { normals: 3 * positions, materials: faces, seams: corners, triangleDensity: faces, texcoordIndices: corners };
+  const wanted = { normals: 3 * positions, values: 3 * positions, materials: faces, seams: corners, triangleDensity: faces, texcoordIndices: corners };
   if (!mesh.texcoordIndices) wanted.texcoords = 2 * positions;
   for (const [array, length] of Object.entries(wanted)) {
     if (mesh[array] && mesh[array].length !== length) {
@@ -226,6 +229,24 @@ function polygonResult(call, unwrapped, mesh) {
       polygons.corner_count - 2 * polygons.polygon_count),
     cutPolygons: call.take(Uint32Array, polygons.cut_polygons, polygons.cut_count),
   };
+}
+
+// Of each page the texels that show the values at the meshes' vertices.
+function texturesOf(call, unwrapped, { meshes, pages }, list, shifts) {
+  const lacking = list.findIndex(({ values }) => !values);
+  if (lacking >= 0) throw new BadInputError(`mesh ${lacking}: values are missing, which other meshes have`);
+  const values = new Float32Array(3 * meshes.reduce((sum, { vertices }) => sum + vertices.length, 0));
+  let at = 0;
+  meshes.forEach(({ vertices }, i) => {
+    for (const v of vertices) for (let k = 0; k < 3; ++k) values[at++] = list[i].values[3 * v + k];
+  });
+  const given = call.put(values);
+  return pages.map(({ width, height }, page) => {
+    const options = call.struct("transfer_options", { page, ...(shifts === undefined ? {} : { shifts }) });
+    const texels = call.allocate(12 * width * height);
+    call.check("transfer", unwrapped, given, values.length / 3, options, texels, width * height);
+    return call.take(Float32Array, texels, 3 * width * height);
+  });
 }
 
 // Arrays with one element, or two, an instance.

@@ -35,6 +35,7 @@ export const structs = {
   instances: struct("size size instance_count; pointer instances"),
   charts: struct(`size size chart_count; pointer mesh page material triangle_count kept area stretch_l2 stretch_999
     stretch_max`),
+  transfer_options: struct("size size; u32 page; i32 shifts"),
   pack_options: struct(`size size; i32 page_width page_height; u32 max_pages; i32 allow_rotation padding border
     alignment crop power_of_two square preset; f64 time_budget; u64 effort seed`),
   packed_info: struct(`size size placement_count page_count unplaced_count; pointer placements pages; f64 utilization;

@@ -109,6 +109,35 @@ test("instances are unwrapped once, and have places apart by density", () => {
   assert.throws(() => atlas.unwrap({ ...mesh, instances: [] }), BadInputError);
 });
 
+test("values at vertices become a texture that shows them", () => {
+  const grid = waves(), values = Float32Array.from(grid.positions, (x, i) => 0.5 + 0.3 * x + (i % 3) / 10);
+  const { meshes: [result], pages: [page], textures } = atlas.unwrap({ ...grid, values }, { pageSize: 512 });
+  assert.equal(textures.length, 1);
+  assert.equal(textures[0].length, 3 * page.width * page.height);
+  let worst = 0, sum = 0, count = 0;
+  for (let v = 0; v < result.vertices.length; v += 7) {
+    const x = result.uvs[2 * v] * page.width - 0.5, y = result.uvs[2 * v + 1] * page.height - 0.5;
+    const left = Math.floor(x), low = Math.floor(y);
+    for (let k = 0; k < 3; ++k) {
+      let shown = 0;
+      for (const [i, j] of [[0, 0], [1, 0], [0, 1], [1, 1]]) {
+        const weight = (i ? x - left : 1 - x + left) * (j ? y - low : 1 - y + low);
+        shown += weight * textures[0][3 * ((low + j) * page.width + left + i) + k];
+      }
+      const error = Math.abs(shown - values[3 * result.vertices[v] + k]);
+      worst = Math.max(worst, error);
+      sum += error;
+      ++count;
+    }
+  }
+  assert.ok(worst < 0.03 && sum / count < 0.001, `${worst}, in the mean ${sum / count}`);  // of 0.2 to 0.9
+  assert.equal(atlas.unwrap(grid).textures, undefined);
+  assert.throws(() => atlas.unwrap([{ ...box(), values: new Float32Array(box().positions.length) }, box()]), /mesh 1: values are missing/);
+  assert.throws(() => atlas.unwrap({ ...box(), values: [1, 2, 3] }), /mesh 0: values has 3 numbers instead of/);
+  assert.throws(() => atlas.unwrap({ ...grid, values }, { shifts: 65 }), BadOptionError);
+  assert.throws(() => atlas.unwrap({ ...grid, values: values.map(() => NaN) }), BadInputError);
+});
+
 test("progress rises to 1 in each stage, and an aborted signal ends the call", () => {
   const stages = new Map();
   atlas.unwrap(mesh, { onProgress: (stage, fraction) => stages.set(stage, fraction) });

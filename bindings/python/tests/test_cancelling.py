@@ -87,6 +87,20 @@ def test_an_interrupt_ends_a_long_call_soon():
     assert time.perf_counter() - begin < whole / 2
 
 
+def test_progress_can_stop_a_call_whenever_it_wants():
+    vertices, faces = terrain(250)
+    reports = []
+
+    def progress(*report):
+        reports.append(report)
+
+    libatlas.unwrap(vertices, faces, charts="best", packing="best", progress=progress)
+    assert len(set(reports)) < len(reports)  # the same again
+    for stage in ("charts", "packing"):
+        fractions = [fraction for name, fraction in reports if name == stage]
+        assert fractions == sorted(fractions)
+
+
 @pytest.mark.skipif(sys.platform == "win32", reason="signals of POSIX")
 def test_ctrl_c_ends_a_program():
     program = (

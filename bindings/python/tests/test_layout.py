@@ -56,10 +56,12 @@ def test_members_lie_where_the_compiler_puts_them(tmp_path):
     assert [int(number) for number in printed.split()] == expected
 
 
-def test_numpy_sees_placements_as_the_struct():
-    fields = {name: offset for name, (_, offset) in _structs.PLACEMENT.fields.items()}
-    assert fields == {name: getattr(_structs.Placement, name).offset for name in fields}
-    assert _structs.PLACEMENT.itemsize == ctypes.sizeof(_structs.Placement)
+@pytest.mark.parametrize("name", ["Placement", "Instance"])
+def test_numpy_sees_elements_as_the_struct(name):
+    struct, dtype = getattr(_structs, name), getattr(_structs, name.upper())
+    fields = {field: offset for field, (_, offset) in dtype.fields.items()}
+    assert fields == {field: getattr(struct, field).offset for field, _ in struct._fields_}
+    assert dtype.itemsize == ctypes.sizeof(struct)
 
 
 def test_options_are_those_of_the_structs():

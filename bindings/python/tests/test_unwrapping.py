@@ -139,6 +139,36 @@ def test_meshes_share_an_atlas():
         assert count.any() and (count > 1).mean() < 1e-3  # edges may run through centres
 
 
+def test_instances_have_places_of_their_own():
+    atlas = libatlas.Atlas()
+    atlas.add(*torus(), instances=[1, 2, 1])
+    atlas.add(*box())
+    shown, once = atlas.unwrap(page_size=512)
+    places = shown.instances
+    assert len(places) == 3 and len(once.instances) == 0
+    # uv * scale is the mesh in texels, twice as long for the second instance.
+    page = shown.pages[places.page]
+    assert places.scale[1] * page[1] == pytest.approx(2 * places.scale[0] * page[0], rel=0.05)
+    width, height = shown.pages[0]
+    count = np.zeros((height, width), int)
+    uvs = [shown.corner_uvs * places.scale[i] + places.offset[i] for i in range(3)] + [once.corner_uvs]
+    for corners in uvs:
+        assert corners.min() >= 0 and corners.max() <= 1
+        for _, x, y in covered_texels(corners * shown.pages[0], width, height):
+            np.add.at(count, (y, x), 1)
+    assert count.any() and (count > 1).mean() < 1e-3
+    with pytest.raises(ValueError):
+        places.scale[0] = 1
+
+
+@pytest.mark.parametrize("bad", [[], [0], [-1], [np.nan], [[1]], 3])
+def test_instances_that_are_none(bad):
+    atlas = libatlas.Atlas()
+    with pytest.raises(libatlas.InputError, match="instance"):
+        atlas.add(*box(), instances=bad)
+    assert len(atlas) == 0
+
+
 def test_an_atlas_can_be_unwrapped_again_and_grow():
     atlas = libatlas.Atlas()
     atlas.add(*box())

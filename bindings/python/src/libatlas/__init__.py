@@ -12,7 +12,7 @@ from libatlas._library import Progress, version
 from libatlas._options import IslandOptions, PackOptions, Preset, UnwrapOptions, lightmap_options
 from libatlas._packing import PackedIslands, PackedRects, pack_islands, pack_rects
 from libatlas._plotting import plot
-from libatlas._results import Charts, Distortion, UnwrappedAtlas, UnwrappedMesh
+from libatlas._results import Charts, Distortion, Instances, UnwrappedAtlas, UnwrappedMesh
 from libatlas._transferring import transfer
 from libatlas._unwrapping import Atlas, unwrap
 from libatlas.errors import (
@@ -35,6 +35,7 @@ __all__ = [
     "Distortion",
     "Error",
     "InputError",
+    "Instances",
     "InternalError",
     "IslandOptions",
     "NoSolutionError",

@@ -218,19 +218,22 @@ class _Run:
             self._done.set()
 
     def wait(self, progress: Progress | None) -> int:
-        """Returns the status of the call. Of reports that pile up, only the last of a stage counts."""
-        report = None
+        """Returns the status of the call. Of reports that pile up, only the last of a stage counts; one that nothing
+        follows is repeated, so that those who look for a reason to stop there find it soon."""
+        report = last = None
         while True:
             try:
                 # Windows notices Ctrl-C only between two calls.
                 newer = self._reports.get(timeout=0.1) if report is None else self._reports.get_nowait()
             except queue.Empty:
                 newer = None
+                report = report or last
             if report is not None and progress is not None and (newer is None or _ends(report, newer)):
                 progress(report[0].decode(), report[1])
             if isinstance(newer, int):
                 return newer
             report = newer
+            last = report or last
 
     def cancel(self) -> None:
         """Cancels the call, and waits for its end, however often Ctrl-C is pressed."""

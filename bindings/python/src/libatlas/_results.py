@@ -50,6 +50,18 @@ class Distortion:
     thin_triangles: int  #: slivers that rounding to floats closes or turns over
 
 
+@dataclass(frozen=True)
+class Instances:
+    """Where the instances of a mesh have its uvs: at uv * scale + offset of their page. Arrays are read only."""
+
+    page: npt.NDArray[np.uint32]  #: (N,)
+    scale: npt.NDArray[np.float32]  #: (N, 2)
+    offset: npt.NDArray[np.float32]  #: (N, 2): 0..1 over the page, origin bottom left
+
+    def __len__(self) -> int:
+        return len(self.page)
+
+
 class UnwrappedMesh:
     """Vertices to draw a mesh with. A vertex on a seam has a copy for each side.
 
@@ -105,6 +117,18 @@ class UnwrappedMesh:
         Another face has the same edge in space then, but not in uv. Borders are no seams.
         """
         return self.atlas._seams(self.index, self._shape)
+
+    @property
+    def instances(self) -> Instances:
+        """The instances that the mesh was added with; none of other meshes.
+
+        The uvs of the mesh are 0..1 over a rectangle of its own then, and `triangle_page` is that of the first instance.
+        """
+        c = structs.Instances(size=ctypes.sizeof(structs.Instances))
+        owner = self.atlas._handle
+        Context().call("get_instances", owner.pointer, self.index, c)
+        all_of_them = arrays.view(c.instances, (c.instance_count,), structs.INSTANCE, owner)
+        return Instances(*(all_of_them[name] for name in Instances.__annotations__))
 
     @property
     def pages(self) -> npt.NDArray[np.int32]:

@@ -216,6 +216,7 @@ class PackedIslandsInfo(ctypes.Structure):
     ]
 
 
+INSTANCE = np.dtype([("page", "<u4"), ("scale", "<f4", 2), ("offset", "<f4", 2)])
 PLACEMENT = np.dtype([("page", "<u4"), ("x", "<i4"), ("y", "<i4"), ("rotated", "<i4")])
 
 #: By the names of the header.

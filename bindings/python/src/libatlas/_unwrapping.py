@@ -51,6 +51,7 @@ class Atlas:
         seams: npt.ArrayLike | None = None,
         triangle_density: npt.ArrayLike | None = None,
         density: float = 1,
+        instances: npt.ArrayLike | None = None,
     ) -> int:
         """Adds a copy of a mesh, and returns its number, counted from 0.
 
@@ -68,11 +69,13 @@ class Atlas:
                 across which no chart continues. Either side may say so.
             triangle_density: (F,) floats > 0: relative texel density, times `density`.
             density: relative linear texel density of the mesh, finite and > 0.
+            instances: (N,) floats > 0, at least one: the mesh is shown N times. It is unwrapped once, and each instance
+                gets a place for a copy of its uvs (`UnwrappedMesh.instances`), larger by its relative linear density.
 
         Raises:
             InputError: an array has the wrong shape, or a value that is not usable.
             TypeError: an array has the wrong kind of numbers.
-            UnsupportedError: beyond 2^30 triangles or 2^32 positions in all.
+            UnsupportedError: beyond 2^30 triangles, 2^32 positions or 2^30 instances in all.
         """
         mesh = structs.Mesh()
         polygons = arrays.Faces(faces, polygon_sizes, wide=uv_faces is not None)
@@ -95,8 +98,12 @@ class Atlas:
             keep.append(arrays.floats(triangle_density, (polygons.count,), "triangle_density"))
             mesh.triangle_density = keep[-1].ctypes.data
         number = ctypes.c_uint32()
+        call, more = "add_mesh", ()  # type: tuple[str, tuple[Any, ...]]
+        if instances is not None:
+            keep.append(arrays.floats(instances, (None,), "instances"))
+            call, more = "add_instances", (keep[-1].ctypes.data, len(keep[-1]))
         with self._lock:
-            Context().call("add_mesh", self._handle.pointer, mesh, ctypes.byref(number))
+            Context().call(call, self._handle.pointer, mesh, *more, ctypes.byref(number))
             self._shapes.append(polygons.shape)
             self._vertex_counts.append(mesh.position_count)
         return number.value
@@ -115,8 +122,9 @@ class Atlas:
 
         Args:
             threads: how many to use; 0: as many as the machine has.
-            progress: called in this thread with the name of a stage and rising fractions from 0 to 1. Whatever
-                it raises stops the call, and is passed on; so does Ctrl-C in the main thread.
+            progress: called in this thread with the name of a stage and rising fractions from 0 to 1; with the same
+                again where nothing new comes for a tenth of a second. Whatever it raises stops the call, and is passed
+                on; so does Ctrl-C in the main thread.
             options: those of `UnwrapOptions`.
 
         Raises:
