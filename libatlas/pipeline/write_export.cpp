@@ -168,7 +168,7 @@ World make_world(ExportJob& job, ExportToWrite& made, const Context& context) {
   const ExportOptions& options = job.options;
   const ChartSet& charts = made.packed.charts;
   const PageLayout& layout = made.packed.layout;
-  const PlacedCharts placed{charts, layout.placements, layout.pages};
+  const PlacedCharts placed = made.packed.placed();
   World world = assemble_world(job.scene, placed, made.mesh, std::move(made.uvs));
   add_page_texts(options, layout.pages, made.light, world);
   if (!made.light && options.polygons && job.scene.polygons.count() > 0)
