@@ -4,7 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
+#include <optional>
 #include <set>
 #include <utility>
 
@@ -208,6 +210,20 @@ class LikeMesh::Keeper {
   // Keeps a chart's place if it has one.
   void keep(std::uint32_t c) {
     if (!charts_.charts[c].kept) return;
+    std::optional<Similarity> place = place_of(c);
+    if (!place) {
+      mirror(c);
+      place = place_of(c);
+      if (!place) return mirror(c);
+    }
+    layout_.origins[c] = origin_of(c);
+    texels_ += charts_.charts[c].distortion.uv_area * place->scale * place->scale;
+    area_ += charts_.charts[c].distortion.uv_area;
+    take_place(c, *place);
+  }
+
+  // Where the chart lay, if that is a similar shape.
+  std::optional<Similarity> place_of(std::uint32_t c) const {
     std::vector<Correspondence> pairs;
     for (const std::uint32_t t : triangles(c)) {
       if (like_.chart_[t] == kNoIndex) continue;
@@ -215,18 +231,26 @@ class LikeMesh::Keeper {
         pairs.push_back({charts_.uvs[charts_.triangle_uv[i]], like_.texels_[i]});
     }
     const Similarity fit = fit_similarity(pairs);
-    const auto off = [&](const Correspondence& p) {
+    const bool in_place = std::all_of(pairs.begin(), pairs.end(), [&](const Correspondence& p) {
       const Vec2d at = fit(p.uv);
-      return std::max(std::abs(at.x - p.texel.x), std::abs(at.y - p.texel.y));
-    };
-    if (!(fit.scale > 0) || std::any_of(pairs.begin(), pairs.end(), [&](const Correspondence& p) {
-          return !(off(p) <= kInPlace);
-        }))
-      return;
-    layout_.origins[c] = origin_of(c);
-    texels_ += charts_.charts[c].distortion.uv_area * fit.scale * fit.scale;
-    area_ += charts_.charts[c].distortion.uv_area;
-    take_place(c, fit);
+      return std::max(std::abs(at.x - p.texel.x), std::abs(at.y - p.texel.y)) <= kInPlace;
+    });
+    return fit.scale > 0 && in_place ? std::optional(fit) : std::nullopt;
+  }
+
+  // Mirrors a chart and turns its triangles: with the uvs of some, triangles that disagree with
+  // their neighbours, or all of a program that mirrors charts, run clockwise.
+  void mirror(std::uint32_t c) {
+    Chart& chart = charts_.charts[c];
+    for (std::uint32_t i = chart.first_uv; i < chart.first_uv + chart.uv_count; ++i)
+      charts_.uvs[i].x = chart.size.x - charts_.uvs[i].x;
+    chart.axis = {-chart.axis.x, -chart.axis.y, -chart.axis.z};
+    std::vector<std::uint32_t> turned(triangles(c).begin(), triangles(c).end()), flipped;
+    std::sort(turned.begin(), turned.end());
+    const std::vector<std::uint32_t>& before = charts_.flipped_triangles;
+    std::set_symmetric_difference(before.begin(), before.end(), turned.begin(), turned.end(),
+                                  std::back_inserter(flipped));
+    charts_.flipped_triangles = std::move(flipped);
   }
 
   ChartOrigin origin_of(std::uint32_t c) const {

@@ -119,6 +119,18 @@ UnwrapOptions lightmap_options(double texels_per_metre, double metres_per_unit) 
 
 namespace {
 
+// The density of all charts, or the mean one by area where charts keep theirs.
+double mean_density(const ChartSet& charts, const PageLayout& layout) {
+  if (layout.kept_texels.empty()) return layout.placements[0].texels_per_unit.x;
+  double texels = 0, area = 0;
+  for (const ChartPlacement& p : layout.placements) {
+    const double own = charts.charts[p.chart].distortion.uv_area;
+    texels += own * p.texels_per_unit.x * p.texels_per_unit.y;
+    area += own;
+  }
+  return area > 0 ? std::sqrt(texels / area) : 1;
+}
+
 // Finishes the uvs of charts that have their places.
 Result<UnwrappedMesh> finish(const MeshView& mesh, ChartSet charts, PagesOfParts laid,
                              const UnwrapOptions& options, const Context& context) {
@@ -127,7 +139,7 @@ Result<UnwrappedMesh> finish(const MeshView& mesh, ChartSet charts, PagesOfParts
   result.charts = std::move(charts);
   result.pages = std::move(layout.pages);
   result.utilization = layout.uv_utilization;
-  result.texels_per_unit = layout.placements[0].texels_per_unit.x;
+  result.texels_per_unit = mean_density(result.charts, layout);
   result.gaps = laid.left;
   result.gaps.charts = laid.opened;
   const ChartedMesh charted(mesh.indices, result.charts);
