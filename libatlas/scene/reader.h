@@ -78,8 +78,8 @@ struct LoadedScene {
   // The same, one per material of the scene, if the pages differ in shape (then 1 for a material of
   // which the file says nothing); else empty. For ChartOptions::material_uv_aspects.
   std::vector<double> material_uv_aspects = {};
-  // One per material of the scene: its page, likewise.
-  std::vector<UvPage> material_uv_pages = {};
+  // One per material of the scene: its page, likewise; and all pages that the file names.
+  std::vector<UvPage> material_uv_pages = {}, uv_pages = {};
   // The first Viewpoint of a VRML file, or the first perspective camera of a glTF file's scene.
   std::optional<FileView> view = {};
   std::vector<FileView> further_views = {};  // the others, in the order of the file, at most 100

@@ -120,11 +120,15 @@ void UvPages::take(std::string_view line) {
     pages.single = {said.aspect, said.extent};
 }
 
-UvPages::Page UvPages::find(std::string_view material, std::int64_t set) const {
+const UvPages::Pages* UvPages::of_set(std::int64_t set) const {
   auto at = sets_.find(set);
   if (at == sets_.end()) at = sets_.find(kUnnamed);
-  if (at == sets_.end()) return {};
-  const Pages& pages = at->second;
+  return at == sets_.end() ? nullptr : &at->second;
+}
+
+UvPages::Page UvPages::find(std::string_view material, std::int64_t set) const {
+  if (!of_set(set)) return {};
+  const Pages& pages = *of_set(set);
   if (pages.by_number.empty()) return pages.single;
   const std::int32_t page = page_number(material);
   const auto found = page < 0 ? pages.by_number.end() : pages.by_number.find(std::uint32_t(page));
@@ -137,6 +141,15 @@ double UvPages::aspect_of(std::string_view material, std::int64_t set) const {
 
 UvPage UvPages::page_of(std::string_view material, std::int64_t set) const {
   return find(material, set).page;
+}
+
+std::vector<UvPage> UvPages::pages_of(std::int64_t set) const {
+  std::vector<UvPage> all;
+  const Pages* pages = of_set(set);
+  if (pages && pages->by_number.empty()) all.push_back(pages->single.page);
+  if (pages)
+    for (const auto& [number, page] : pages->by_number) all.push_back(page.page);
+  return all;
 }
 
 }  // namespace atlas

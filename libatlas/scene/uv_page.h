@@ -8,6 +8,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace atlas {
 
@@ -46,6 +47,8 @@ class UvPages {
   double aspect_of(std::string_view material, std::int64_t set = 0) const;
   // Returns that page.
   UvPage page_of(std::string_view material, std::int64_t set = 0) const;
+  // Returns all pages of the set, or the only one, ascending by number.
+  std::vector<UvPage> pages_of(std::int64_t set = 0) const;
 
  private:
   struct Page {
@@ -56,6 +59,7 @@ class UvPages {
     Page single;                              // the only page
     std::map<std::uint32_t, Page> by_number;  // several pages
   };
+  const Pages* of_set(std::int64_t set) const;
   Page find(std::string_view material, std::int64_t set) const;
 
   std::map<std::int64_t, Pages> sets_;
