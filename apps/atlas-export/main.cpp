@@ -310,6 +310,7 @@ Result<LoadedScene> read_like(const app::ExportCommand& command, const Context& 
   read.confine = command.read.confine;
   read.limits = command.read.limits;
   read.load_textures = read.unlit_textures = false;
+  read.told_uvs = true;
   return read_scene(command.like, read, context);
 }
 

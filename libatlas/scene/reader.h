@@ -42,6 +42,9 @@ struct ReadOptions {
   // in a comment) into Scene::lightmap: its linear images if all can be read, else those of 8 bits.
   // Ignored if there is an illumination_file.
   bool lightmap = false;
+  // true: of several sets of uvs, takes the last whose page a glTF file says as libatlas writes it,
+  // such as those of an earlier export, in place of those of the materials' textures.
+  bool told_uvs = false;
   // If true, sets encoded_textures, normals and rest, which exports that keep the scene need.
   bool keep_scene = false;
   // true: a scene may name only files in its own folder and below, after links are followed, and is
