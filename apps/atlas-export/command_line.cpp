@@ -83,6 +83,20 @@ void add_chart_options(CLI::App& app, ExportCommand& command) {
                  "without it, what the file says if libatlas wrote it, else 1")
       ->needs(keep)
       ->check(positive());
+  app.add_option(
+         "--like", command.like,
+         "An earlier export of the scene, or any file of it with uvs: charts, uvs and places "
+         "of its page stay for all triangles that lie where they lay; only what is new or "
+         "changed is unwrapped (uvs without light)")
+      ->excludes(keep);
+  app.add_option("--seams", command.seams,
+                 "Seams to cut in any case: an OBJ file, which may be the scene's own, whose "
+                 "polylines (l) follow edges of the scene");
+  app.add_option("--min-fill", options.charts.min_fill,
+                 "Charts that leave more of a page empty than this are cut to fill it; 0: none is "
+                 "cut for the page")
+      ->capture_default_str()
+      ->check(within(0, 0.999, "at least 0, below 1"));
   app.add_option("--preset", options.charts.preset, "Chart quality: fast, default or best")
       ->transform(choices<ChartPreset>({{"fast", ChartPreset::fast},
                                         {"default", ChartPreset::standard},

@@ -14,6 +14,7 @@ namespace atlas::app {
 
 struct ExportCommand {
   std::filesystem::path scene;
+  std::filesystem::path like, seams;           // of ExportOptions; empty if not given
   std::vector<std::filesystem::path> reports;  // a .html is a page, others are JSON
   std::filesystem::path depfile;               // empty if not asked for
   ReportRequest request;                       // the command line, and every option with its value

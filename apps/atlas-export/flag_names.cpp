@@ -7,7 +7,7 @@
 namespace atlas::app {
 namespace {
 
-constexpr std::array<FlagName, 38> kFlagNames{{
+constexpr std::array<FlagName, 41> kFlagNames{{
     {"ExportOptions::atlases", "--atlases"},
     {"ExportOptions::lightmap_pages", "--atlases"},
     {"ExportOptions::plain_pages", "--atlases"},
@@ -28,6 +28,8 @@ constexpr std::array<FlagName, 38> kFlagNames{{
     {"ExportOptions::keep_scene", "--keep-scene"},
     {"ExportOptions::uv_set", "--uv-set"},
     {"ExportOptions::udim", "--udim"},
+    {"ExportOptions::like", "--like"},
+    {"ExportOptions::seams", "--seams"},
     {"ExportOptions::polygons", "--polygons"},
     {"ExportOptions::mesh_uvs", "--instances"},
     {"ExportOptions::linear", "--linear"},
@@ -41,6 +43,7 @@ constexpr std::array<FlagName, 38> kFlagNames{{
     {"ChartOptions::split_at_materials", "--across-materials"},
     {"ChartOptions::keep_uv_charts", "--keep-uv-charts"},
     {"ChartOptions::uv_aspect", "--uv-aspect"},
+    {"ChartOptions::min_fill", "--min-fill"},
     {"ToneOptions::op", "--tone"},
     {"ToneOptions::white", "--white"},
     {"ToneOptions::exposure_stops", "--exposure"},

@@ -22,6 +22,7 @@
 #include "libatlas/pipeline/lightmap.h"
 #include "libatlas/pipeline/plan.h"
 #include "libatlas/report/html_report.h"
+#include "libatlas/scene/seam_lines.h"
 
 namespace {
 
@@ -159,11 +160,13 @@ std::vector<std::pair<const char*, std::filesystem::path>> outputs_beside(
 
 Status check_outputs(const app::ExportCommand& command) {
   const std::filesystem::path& target = command.options.target;
-  std::vector<std::filesystem::path> others{command.scene, command.read.illumination_file};
+  std::vector<std::filesystem::path> others{command.scene, command.read.illumination_file,
+                                            command.seams};
   if (Status s = app::check_output(file_beside(target), others); !s.ok()) return s;
   others.insert(others.end(), command.reports.begin(), command.reports.end());
   if (Status s = app::check_output(target, others); !s.ok()) return s;
-  others.resize(2);
+  others.resize(3);
+  others.push_back(command.like);  // the world may take its place
   others.push_back(target);
   others.push_back(file_beside(target));
   for (const auto& [flag, output] : outputs_beside(command)) {
@@ -222,7 +225,8 @@ bool is_texture(const std::filesystem::path& file, const Scene& scene) {
 Status add_depfile(const app::ExportCommand& command, const LoadedScene& loaded,
                    ExportOptions& options) {
   if (command.depfile.empty()) return {};
-  std::vector<std::filesystem::path> inputs{command.scene, command.read.illumination_file};
+  std::vector<std::filesystem::path> inputs{command.scene, command.read.illumination_file,
+                                            command.like, command.seams};
   std::copy_if(loaded.files.begin(), loaded.files.end(), std::back_inserter(inputs),
                [&](const std::filesystem::path& file) {
                  return uses_textures(command) || !is_texture(file, loaded.scene);
@@ -284,6 +288,32 @@ ReadOptions read_options(const app::ExportCommand& command) {
   return read;
 }
 
+// Reads the seams, if they are given.
+Status read_seams(const app::ExportCommand& command, const Scene& scene, ExportOptions& options,
+                  const Context& context) {
+  if (command.seams.empty()) return {};
+  Result<SeamLines> seams = read_seam_lines(command.seams, scene);
+  if (!seams.ok()) return seams.status();
+  if (seams->found < seams->segments)
+    context.say(fmt::format("{}: {} of {} segments are no edges of the scene, and left out",
+                            command.seams.string(), seams->segments - seams->found,
+                            seams->segments));
+  options.seams = std::move(seams->edges);
+  return {};
+}
+
+// Reads the earlier export, if one is given.
+Result<LoadedScene> read_like(const app::ExportCommand& command, const Context& context) {
+  if (command.like.empty()) return LoadedScene{};
+  ReadOptions read;
+  read.metres_per_unit = command.read.metres_per_unit;
+  read.confine = command.read.confine;
+  read.limits = command.read.limits;
+  read.load_textures = read.unlit_textures = false;
+  read.told_uvs = true;
+  return read_scene(command.like, read, context);
+}
+
 // A plan needs no target. The options are then those for a target that takes all of them.
 Status check_command(const app::ExportCommand& command) {
   ExportOptions options = command.options;
@@ -312,6 +342,10 @@ Status run(const app::ExportCommand& command, app::Terminal& terminal) {
   options.charts.uv_aspect =
       command.uv_aspect.value_or(loaded->uv_aspect > 0 ? loaded->uv_aspect : 1);
   if (!command.uv_aspect) options.charts.material_uv_aspects = loaded->material_uv_aspects;
+  if (Status s = read_seams(command, loaded->scene, options, context); !s.ok()) return s;
+  const Result<LoadedScene> like = read_like(command, context);
+  if (!like.ok()) return like.status();
+  if (!command.like.empty()) options.like = &*like;
   if (Status s = add_depfile(command, *loaded, options); !s.ok()) return s;
   Result<ExportReport> report = export_world(
       *loaded, options, [&](const StageReport& stage) { terminal.line(stage_line(stage)); },

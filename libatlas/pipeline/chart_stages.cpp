@@ -30,6 +30,32 @@ LightSeams light_seams(const ExportJob& job, const SceneLight* light, const Cont
   return find_light_seams(light->sampler, light->tone, seams, context);
 }
 
+// The edges that are seams in one list or the other; either may be empty.
+std::vector<std::uint8_t> with_seams(const std::vector<std::uint8_t>& given,
+                                     std::span<const std::uint8_t> found) {
+  std::vector<std::uint8_t> edges(given);
+  edges.resize(std::max(given.size(), found.size()), 0);
+  for (std::size_t h = 0; h < found.size(); ++h) edges[h] |= found[h];
+  return edges;
+}
+
+// Sets job.like, and what charts are made of, if uvs of an earlier scene stay.
+Status find_what_stays(ExportJob& job, MeshView& mesh, ChartOptions& options,
+                       const Context& context) {
+  if (!job.options.like) return {};
+  Result<LikeScene> like = like_scene(job.scene, mesh, job.options);
+  if (!like.ok()) return like.status();
+  if (!like->mesh->nothing().empty()) {
+    context.say(like->mesh->nothing());
+    job.report.advice.push_back(like->mesh->nothing());
+    return {};
+  }
+  mesh = like->mesh->view();
+  options = like->mesh->chart_options(options);
+  job.like = std::move(*like);
+  return {};
+}
+
 }  // namespace
 
 Result<SceneLight> expose(ExportJob& job) {
@@ -57,8 +83,11 @@ Result<ChartSet> cut_charts(ExportJob& job, const SceneLight* light) {
   MeshView mesh = view_of(job.scene);
   const LightSeams seams = light_seams(job, light, context);
   if (context.cancelled()) return Status::cancelled();
-  mesh.seams = seams.edges;
-  Result<ChartSet> charts = make_charts(mesh, job.options.charts, context);
+  const std::vector<std::uint8_t> edges = with_seams(job.options.seams, seams.edges);
+  mesh.seams = edges;
+  ChartOptions options = job.options.charts;
+  if (Status s = find_what_stays(job, mesh, options, context); !s.ok()) return s;
+  Result<ChartSet> charts = make_charts(mesh, options, context);
   if (!charts.ok()) return charts;
   ExportReport& report = job.report;
   report_charts(*charts, report);

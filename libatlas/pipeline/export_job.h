@@ -10,6 +10,7 @@
 #include "libatlas/core/context.h"
 #include "libatlas/core/vec.h"
 #include "libatlas/files/atomic_file.h"
+#include "libatlas/pipeline/earlier_scene.h"
 #include "libatlas/pipeline/export_options.h"
 #include "libatlas/pipeline/stage_recorder.h"
 #include "libatlas/report/export_plan.h"
@@ -19,6 +20,7 @@
 #include "libatlas/texture/luminance.h"
 #include "libatlas/texture/tone.h"
 #include "libatlas/unwrap/page_layout.h"
+#include "libatlas/uvs/page_uvs.h"
 
 namespace atlas {
 
@@ -37,6 +39,8 @@ struct ExportJob {
   AtomicFiles files;
   ExportReport report;
   StageRecorder record;
+  // The scene with the uvs of ExportOptions::like, where some of these stay.
+  std::optional<LikeScene> like = {};
 };
 
 // The scene's triangles as charts are made of them.
@@ -53,6 +57,10 @@ struct PackedCharts {
   ChartSet charts;
   std::vector<Vec2d> full_densities;
   PageLayout layout;
+
+  PlacedCharts placed() const {
+    return {charts, layout.placements, layout.pages, layout.kept_texels};
+  }
 };
 
 // Reports the charts. Must be called again whenever charts were cut.

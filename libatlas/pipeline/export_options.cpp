@@ -106,6 +106,18 @@ Status check_options(const ExportOptions& o) {
   if (Status s = check_udim(o); !s.ok()) return s;
   if (Status s = check_polygons(o); !s.ok()) return s;
   if (Status s = check_mesh_uvs(o); !s.ok()) return s;
+  if (o.like && o.charts.keep_uv_charts)
+    return {ErrorCode::bad_option,
+            "ExportOptions::like: its uvs cannot be kept together with the scene's own (leave "
+            "ChartOptions::keep_uv_charts out)"};
+  if (!o.seams.empty() && o.mesh_uvs != MeshUvs::places)
+    return {ErrorCode::bad_option,
+            "ExportOptions::seams: only uvs of each place can be cut there (leave "
+            "ExportOptions::mesh_uvs out)"};
+  if (o.like && o.mesh_uvs != MeshUvs::places)
+    return {ErrorCode::bad_option,
+            "ExportOptions::like: only uvs of each place can be kept (leave "
+            "ExportOptions::mesh_uvs out)"};
   if (o.uv_set < 0 || o.uv_set > 7) return out_of_range("uv_set", "within 1..7, or 0");
   if (o.uv_set > 0 && (!o.keep_scene || lower_extension(o.target) == ".obj")) {
     return {ErrorCode::bad_option,

@@ -16,6 +16,8 @@
 
 namespace atlas {
 
+struct LoadedScene;
+
 // A file of a caller's own that appears together with the world.
 struct ExtraFile {
   std::filesystem::path path = {};
@@ -126,6 +128,14 @@ struct ExportOptions {
   // simplify_slip at most.
   bool compress = false;
   std::int32_t png_compression = 3;  // zlib level 0..9; 1 to 5 are the same (PngOptions::smooth)
+
+  // 3 a triangle, or empty: as MeshView::seams, for instance read_seam_lines(). Needs
+  // MeshUvs::places.
+  std::vector<std::uint8_t> seams = {};
+  // An earlier state of the scene with uvs, or null: plain uvs stay like these where triangles are
+  // unchanged (UnwrapOptions::like, earlier_scene.h). Needs a scene without light or charts_only,
+  // and MeshUvs::places; not with keep_uv_charts. Must outlive the export.
+  const LoadedScene* like = nullptr;
 
   bool charts_only = false;  // make charts and uvs only: bake no light, write no image
   // Also write the scene's own objects, materials, textures, normals and texture coordinates, see

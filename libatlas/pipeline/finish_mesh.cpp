@@ -17,7 +17,7 @@ Result<FinishedMesh> finish_mesh(ExportJob& job, const PackedCharts& packed,
   FinishedMesh result{ChartedMesh(job.scene.indices, packed.charts), {}, {}};
   result.mesh = coarse ? WorldMesh{coarse->indices, coarse->uv_indices, coarse->triangle_chart}
                        : result.fine.view();
-  const PlacedCharts placed{packed.charts, packed.layout.placements, packed.layout.pages};
+  const PlacedCharts placed = packed.placed();
   const bool baked = job.plan.bake;
   const std::int32_t mip_levels = report.mip_levels;
   const std::int32_t padding = baked ? gutter_pad(mip_levels) : plain_padding(job.options);

@@ -65,10 +65,25 @@ Result<PageLayout> fill_plain(ExportJob& job, const PlainUvs& uvs, const LayoutO
   return std::move(apart->layout);
 }
 
+// Puts charts that stay where they lay, and the others beside them.
+Result<PageLayout> lay_out_like(ExportJob& job, const LayoutOptions& options, ChartSet& charts,
+                                const Context& context) {
+  const bool apart = job.options.keep_scene || job.options.plain_part_gaps;
+  Result<PagesOfParts> pages = job.like->mesh->lay_out(options, apart, charts, context);
+  if (!pages.ok()) return pages.status();
+  ExportReport& report = job.report;
+  report.opened_charts = pages->opened;
+  report.gaps = pages->left;
+  report_charts(charts, report);
+  report.origins = pages->layout.origins;
+  return std::move(pages->layout);
+}
+
 // Without light, pages are filled as well as packing can, unless a texel density is asked for.
 // One above what full pages hold is lowered to that, which also keeps sizes in texels finite.
 Result<PageLayout> lay_out_plain(ExportJob& job, const LayoutOptions& options, ChartSet& charts,
                                  const Context& context) {
+  if (job.like) return lay_out_like(job, options, charts, context);
   const double asked = job.options.texel_metres;
   const double texels = double(options.pages) * options.page_size * options.page_size;
   double density = filling_density(charts, texels);
@@ -94,6 +109,12 @@ void report_layout(ExportJob& job, const ChartSet& charts, const PageLayout& lay
   std::string quality = fmt::format("scale {:.3f}, {:.0f} % used by charts", report.scale,
                                     100 * layout.uv_utilization);
   if (charts.charts.size() > uncut) quality += fmt::format(", cut into {}", charts.charts.size());
+  const auto count = [&](ChartOrigin origin) {
+    return std::count(layout.origins.begin(), layout.origins.end(), origin);
+  };
+  if (!layout.origins.empty())
+    quality += fmt::format(", {} kept, {} repaired, {} new", count(ChartOrigin::kept),
+                           count(ChartOrigin::repaired), count(ChartOrigin::made));
   job.record.finish({uncut, layout.pages.size(), "pages", quality});
 }
 

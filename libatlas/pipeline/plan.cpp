@@ -300,6 +300,11 @@ Status check_plan(const ExportPlan& plan, const ExportOptions& options) {
         "ExportOptions::mesh_uvs: this scene carries light, and each place of a mesh has its own "
         "(add ExportOptions::charts_only, or leave ExportOptions::mesh_uvs out)"};
   }
+  if (options.like && plan.bake) {
+    return {ErrorCode::bad_option,
+            "ExportOptions::like: this scene carries light, whose charts get textures of sizes of "
+            "their own (add ExportOptions::charts_only, or leave ExportOptions::like out)"};
+  }
   if (options.polygons && plan.bake) {
     return {ErrorCode::bad_option,
             "ExportOptions::polygons: this scene carries light, which is baked for triangles (add "

@@ -144,11 +144,10 @@ void add_pages(const ExportJob& job, const BakedPages& baked, World& world) {
 // Says in the world how large its pages are.
 void add_page_texts(const ExportOptions& options, std::span<const Extent> pages, bool baked,
                     World& world) {
-  if (!baked) {
-    world.info.push_back(plain_pages_text(pages, options.udim));
-  } else if (options.keep_scene) {
+  if (!baked) world.info.push_back(plain_pages_text(pages, options.udim));
+  if (baked && options.keep_scene) {
     world.info.push_back(uv_page_text(pages[0].width, pages[0].height));
-  } else {
+  } else if (baked || pages.size() > 1) {
     for (std::size_t p = 0; p < pages.size(); ++p)
       world.info.push_back(uv_page_text(p, pages[p].width, pages[p].height));
   }
@@ -168,7 +167,7 @@ World make_world(ExportJob& job, ExportToWrite& made, const Context& context) {
   const ExportOptions& options = job.options;
   const ChartSet& charts = made.packed.charts;
   const PageLayout& layout = made.packed.layout;
-  const PlacedCharts placed{charts, layout.placements, layout.pages};
+  const PlacedCharts placed = made.packed.placed();
   World world = assemble_world(job.scene, placed, made.mesh, std::move(made.uvs));
   add_page_texts(options, layout.pages, made.light, world);
   if (!made.light && options.polygons && job.scene.polygons.count() > 0)

@@ -18,6 +18,7 @@
 #include "libatlas/report/export_plan.h"
 #include "libatlas/scene/defects.h"
 #include "libatlas/texture/tone.h"
+#include "libatlas/unwrap/like.h"
 
 namespace atlas {
 
@@ -111,7 +112,9 @@ struct ExportReport {
   bool outlines = false;
   // Triangles written that rounding the uvs to floats turns over or leaves no area.
   std::uint64_t thin_triangles = 0;
-  std::uint64_t cut_polygons = 0;   // faces that are written as triangles, since seams cut them
+  std::uint64_t cut_polygons = 0;  // faces that are written as triangles, since seams cut them
+  // One per chart, or empty if no uvs of an earlier scene stay (ExportOptions::like).
+  std::vector<ChartOrigin> origins = {};
   std::uint64_t opened_charts = 0;  // charts whose parts were moved apart so as not to share texels
   // The length of the charts' borders and of the parts that still share texels, in texels. Present
   // with baked light, and with uvs for a lightmap.

@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
@@ -95,6 +96,20 @@ Json json_of(const ChartSet::Timing& t) {
           {"overlaps", t.overlaps_cpu}, {"absorb", t.absorb_cpu},   {"limbs", t.limbs_cpu}};
 }
 
+constexpr std::array kOrigins{ChartOrigin::kept, ChartOrigin::repaired, ChartOrigin::made};
+
+const char* name_of(ChartOrigin origin) {
+  return origin == ChartOrigin::kept ? "kept" : origin == ChartOrigin::made ? "made" : "repaired";
+}
+
+// How many charts have what of the earlier uvs.
+Json origins_json(const ExportReport& r) {
+  Json json;
+  for (const ChartOrigin origin : kOrigins)
+    json[name_of(origin)] = std::count(r.origins.begin(), r.origins.end(), origin);
+  return json;
+}
+
 Json rows_of(const ExportReport& r) {
   Json rows = Json::array();
   for (std::size_t i = 0; i < r.charts.size(); ++i) {
@@ -106,6 +121,7 @@ Json rows_of(const ExportReport& r) {
                     {"planar", c.planar_projection},
                     {"kept", c.kept},
                     {"distortion", json_of(c.distortion)}});
+    if (i < r.origins.size()) rows.back()["origin"] = name_of(r.origins[i]);
     if (i >= r.chart_pages.size()) continue;
     rows.back()["page"] = r.chart_pages[i];
     rows.back()["texels_per_unit"] = r.chart_densities[i];
@@ -258,6 +274,7 @@ Json error_json(const Fidelity& f, ToneOperator tone) {
 // Values that were not measured have no key, because a 0 would read as a perfect result.
 void add_results(const ExportReport& r, const ReportRequest& request, Json& json) {
   json["charts"] = charts_json(r);
+  if (!r.origins.empty()) json["charts"]["like"] = origins_json(r);
   if (request.chart_rows) json["charts"]["charts"] = rows_of(r);
   json["packing"] = pages_json(r);
   if (r.plan.runs("grouping")) json["grouping"] = grouping_json(r.grouping);

@@ -76,6 +76,7 @@ Result<LoadedScene> read_whole(const fs::path& path, const ReadOptions& given,
   builder.wants_textures = options.load_textures;
   builder.wants_normals = options.normals;
   builder.wants_rest = options.rest;
+  builder.wants_told_uvs = options.told_uvs;
   builder.wants_polygons = options.polygons;
   // Shares of the stage: of the scene's file, then of that of the illumination.
   const bool other_light = !options.illumination_file.empty();

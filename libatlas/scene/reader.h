@@ -10,6 +10,7 @@
 #include "libatlas/core/status.h"
 #include "libatlas/scene/defects.h"
 #include "libatlas/scene/scene.h"
+#include "libatlas/scene/uv_page.h"
 
 namespace atlas {
 
@@ -41,6 +42,9 @@ struct ReadOptions {
   // in a comment) into Scene::lightmap: its linear images if all can be read, else those of 8 bits.
   // Ignored if there is an illumination_file.
   bool lightmap = false;
+  // true: of several sets of uvs, takes the last whose page a glTF file says as libatlas writes it,
+  // such as those of an earlier export, in place of those of the materials' textures.
+  bool told_uvs = false;
   // If true, sets encoded_textures, normals and rest, which exports that keep the scene need.
   bool keep_scene = false;
   // true: a scene may name only files in its own folder and below, after links are followed, and is
@@ -77,6 +81,8 @@ struct LoadedScene {
   // The same, one per material of the scene, if the pages differ in shape (then 1 for a material of
   // which the file says nothing); else empty. For ChartOptions::material_uv_aspects.
   std::vector<double> material_uv_aspects = {};
+  // One per material of the scene: its page, likewise; and all pages that the file names.
+  std::vector<UvPage> material_uv_pages = {}, uv_pages = {};
   // The first Viewpoint of a VRML file, or the first perspective camera of a glTF file's scene.
   std::optional<FileView> view = {};
   std::vector<FileView> further_views = {};  // the others, in the order of the file, at most 100

@@ -8,8 +8,9 @@
 namespace atlas {
 namespace {
 
-constexpr std::string_view kSquare = "uvs of a square page", kPage = "uvs of a page of ",
-                           kNumbered = "uvs of page ", kTimes = " x ", kSet = "TEXCOORD_";
+constexpr std::string_view kSquare = "uvs of a square page", kPacked = ", packed for ",
+                           kPage = "uvs of a page of ", kNumbered = "uvs of page ", kTimes = " x ",
+                           kSet = "TEXCOORD_";
 constexpr std::int64_t kUnnamed = -1;  // the set of a line that names none
 
 // Removes the beginning if the text has it, and returns whether it had.
@@ -28,14 +29,14 @@ std::int32_t take_number(std::string_view& text) {
   return number;
 }
 
-// Reads width and height from the start of the text. Returns their ratio, or 0 if there is none.
-double aspect_at(std::string_view text) {
+// Reads width and height from the start of the text. Both are 0 if there are none.
+UvPage extent_at(std::string_view text) {
   const std::int32_t width = take_number(text);
-  if (width < 1 || !take_text(text, kTimes)) return 0;
+  if (width < 1 || !take_text(text, kTimes)) return {};
   const std::int32_t height = take_number(text);
   // Longer pages than these do not exist, and charts of other ratios would be refused.
   constexpr std::int32_t kLongest = 1 << 17;
-  return height < 1 || std::max(width, height) > kLongest ? 0 : double(width) / height;
+  return height < 1 || std::max(width, height) > kLongest ? UvPage{} : UvPage{0, width, height};
 }
 
 // Returns the number of the page that a material's name ends in, or -1.
@@ -56,6 +57,12 @@ struct PageLine {
   std::int64_t set = kUnnamed;
   std::optional<std::uint32_t> page = {};  // nothing: of the only one
   double aspect = 0;                       // 0: the line says no page
+  UvPage extent = {};
+
+  void take_extent(std::string_view text) {
+    extent = extent_at(text);
+    if (extent.height > 0) aspect = double(extent.width) / extent.height;
+  }
 };
 
 PageLine parse(std::string_view line) {
@@ -67,14 +74,16 @@ PageLine parse(std::string_view line) {
     if (said.set < 0 || !take_text(line, ": ")) return {};
   }
   if (take_text(line, kSquare)) {
+    if (take_text(line, kPacked)) said.take_extent(line);
     said.aspect = 1;
   } else if (take_text(line, kPage)) {
-    said.aspect = aspect_at(line);
+    said.take_extent(line);
   } else if (take_text(line, kNumbered)) {
     const std::int32_t page = take_number(line);
     if (page < 0 || !take_text(line, ": ")) return {};
     said.page = static_cast<std::uint32_t>(page);
-    said.aspect = aspect_at(line);
+    said.take_extent(line);
+    said.extent.number = *said.page;
   }
   return said;
 }
@@ -82,7 +91,7 @@ PageLine parse(std::string_view line) {
 }  // namespace
 
 std::string uv_page_text(std::int32_t width, std::int32_t height) {
-  return width == height ? fmt::format("{}, packed for {} x {} texels", kSquare, width, height)
+  return width == height ? fmt::format("{}{}{}{}{} texels", kSquare, kPacked, width, kTimes, height)
                          : fmt::format("{}{}{}{} texels: textures must have this shape", kPage,
                                        width, kTimes, height);
 }
@@ -106,20 +115,41 @@ void UvPages::take(std::string_view line) {
   if (said.aspect == 0) return;
   Pages& pages = sets_[said.set];
   if (said.page)
-    pages.by_number.try_emplace(*said.page, said.aspect);
-  else if (pages.single == 0)
-    pages.single = said.aspect;
+    pages.by_number.try_emplace(*said.page, Page{said.aspect, said.extent});
+  else if (pages.single.aspect == 0)
+    pages.single = {said.aspect, said.extent};
 }
 
-double UvPages::aspect_of(std::string_view material, std::int64_t set) const {
+const UvPages::Pages* UvPages::of_set(std::int64_t set) const {
   auto at = sets_.find(set);
   if (at == sets_.end()) at = sets_.find(kUnnamed);
-  if (at == sets_.end()) return 0;
-  const Pages& pages = at->second;
+  return at == sets_.end() ? nullptr : &at->second;
+}
+
+UvPages::Page UvPages::find(std::string_view material, std::int64_t set) const {
+  if (!of_set(set)) return {};
+  const Pages& pages = *of_set(set);
   if (pages.by_number.empty()) return pages.single;
   const std::int32_t page = page_number(material);
   const auto found = page < 0 ? pages.by_number.end() : pages.by_number.find(std::uint32_t(page));
   return found == pages.by_number.end() ? pages.single : found->second;
+}
+
+double UvPages::aspect_of(std::string_view material, std::int64_t set) const {
+  return find(material, set).aspect;
+}
+
+UvPage UvPages::page_of(std::string_view material, std::int64_t set) const {
+  return find(material, set).page;
+}
+
+std::vector<UvPage> UvPages::pages_of(std::int64_t set) const {
+  std::vector<UvPage> all;
+  const Pages* pages = of_set(set);
+  if (pages && pages->by_number.empty()) all.push_back(pages->single.page);
+  if (pages)
+    for (const auto& [number, page] : pages->by_number) all.push_back(page.page);
+  return all;
 }
 
 }  // namespace atlas

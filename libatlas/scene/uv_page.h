@@ -8,6 +8,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace atlas {
 
@@ -27,6 +28,13 @@ std::string of_uv_set(std::int64_t set, const std::string& line);
 // line says no page.
 std::optional<std::int64_t> uv_set_of_page(std::string_view line);
 
+// A page of a file's uvs.
+struct UvPage {
+  std::uint32_t number = 0;            // 0 if there is only one
+  std::int32_t width = 0, height = 0;  // texels; 0: the file does not say it
+  bool operator==(const UvPage&) const = default;
+};
+
 // What the lines of a file say of its pages.
 class UvPages {
  public:
@@ -37,12 +45,22 @@ class UvPages {
   // Returns width / height of the page of the material's uvs, which are those of this set, or 0 if
   // no line says it. Lines that name no set are about all sets that no other line names.
   double aspect_of(std::string_view material, std::int64_t set = 0) const;
+  // Returns that page.
+  UvPage page_of(std::string_view material, std::int64_t set = 0) const;
+  // Returns all pages of the set, or the only one, ascending by number.
+  std::vector<UvPage> pages_of(std::int64_t set = 0) const;
 
  private:
-  struct Pages {
-    double single = 0;                          // the ratio of the only page; 0: not said
-    std::map<std::uint32_t, double> by_number;  // ratios of several pages
+  struct Page {
+    double aspect = 0;  // 0: not said
+    UvPage page = {};
   };
+  struct Pages {
+    Page single;                              // the only page
+    std::map<std::uint32_t, Page> by_number;  // several pages
+  };
+  const Pages* of_set(std::int64_t set) const;
+  Page find(std::string_view material, std::int64_t set) const;
 
   std::map<std::int64_t, Pages> sets_;
 };

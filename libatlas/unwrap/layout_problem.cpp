@@ -46,15 +46,6 @@ ChartPlacement outlined(const FitPlacement& from, const LayoutOptions& options) 
   return to;
 }
 
-double uv_utilization(const ChartSet& charts, const PageLayout& layout) {
-  double area = 0, page_area = 0;
-  for (const ChartPlacement& p : layout.placements) {
-    area += charts.charts[p.chart].distortion.uv_area * p.texels_per_unit.x * p.texels_per_unit.y;
-  }
-  for (const Extent& page : layout.pages) page_area += double(page.area());
-  return page_area > 0 ? area / page_area : 0;
-}
-
 // Returns the area of the charts at scale 1, in texels.
 double full_texels(const ChartSet& charts, std::span<const Vec2d> texels_per_unit) {
   double texels = 0;
@@ -116,6 +107,15 @@ LayoutProblem::LayoutProblem(const WantedCharts& wanted, const LayoutEffort& how
     outlines.emplace(charts, texels_per_unit);
     fit.shapes = outlines->shapes;
   }
+}
+
+double uv_utilization(const ChartSet& charts, const PageLayout& layout) {
+  double area = 0, page_area = 0;
+  for (const ChartPlacement& p : layout.placements) {
+    area += charts.charts[p.chart].distortion.uv_area * p.texels_per_unit.x * p.texels_per_unit.y;
+  }
+  for (const Extent& page : layout.pages) page_area += double(page.area());
+  return page_area > 0 ? area / page_area : 0;
 }
 
 WorkedLayout layout_of(FitResult fitted, const LayoutProblem& problem) {

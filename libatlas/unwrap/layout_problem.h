@@ -44,6 +44,9 @@ struct LayoutProblem {
   LayoutProblem& operator=(const LayoutProblem&) = delete;
 };
 
+// Returns the area of placed charts / area of the pages.
+double uv_utilization(const ChartSet& charts, const PageLayout& layout);
+
 // Converts the packer's result.
 WorkedLayout layout_of(FitResult fitted, const LayoutProblem& problem);
 

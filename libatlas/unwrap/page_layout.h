@@ -11,6 +11,7 @@
 #include "libatlas/core/status.h"
 #include "libatlas/pack/grouping.h"
 #include "libatlas/pack/pages.h"
+#include "libatlas/unwrap/like.h"
 #include "libatlas/uvs/placement.h"
 
 namespace atlas {
@@ -35,6 +36,10 @@ struct PageLayout {
   double utilization = 0;                       // as in FitResult
   double uv_utilization = 0;                    // area of the charts / area of the pages
   GroupingResult grouping = {};
+  // Only beside earlier uvs (like.h): what each chart has of them; and the uvs of the charts that
+  // stay, one per uv of the charts, in texels of their page, NaN for the others.
+  std::vector<ChartOrigin> origins = {};
+  std::vector<Vec2d> kept_texels = {};
 };
 
 // Returns the texels per unit at which the charts would cover `texels` texels if they left no gaps

@@ -10,10 +10,12 @@
 #include <utility>
 
 #include "libatlas/charts/charted_mesh.h"
+#include "libatlas/charts/mesh/welded_mesh.h"
 #include "libatlas/core/is_enumerator.h"
 #include "libatlas/core/no_index.h"
 #include "libatlas/unwrap/check_pages.h"
 #include "libatlas/unwrap/fill_pages.h"
+#include "libatlas/unwrap/like_mesh.h"
 #include "libatlas/unwrap/part_gaps.h"
 #include "libatlas/unwrap/place_charts.h"
 #include "libatlas/uvs/finish_uvs.h"
@@ -45,10 +47,23 @@ Status check_options(const UnwrapOptions& options) {
                            options.texels_per_unit));
   if (!is_enumerator(options.preset, PackPreset::best))
     return bad(fmt::format("preset is {} (give a PackPreset)", int(options.preset)));
-  return {};
+  if (options.like && options.charts.keep_uv_charts)
+    return bad("like and keep_uv_charts are given both (give one of them)");
+  return options.like ? check_earlier(*options.like, "unwrap") : Status();
 }
 
 namespace {
+
+LayoutOptions layout_options(const UnwrapOptions& options) {
+  LayoutOptions layout{options};
+  layout.padding = padding_of(options);
+  layout.alignment = alignment_of(options);
+  layout.minimum_side = 0;
+  layout.outlines = true;
+  layout.remedy = "ask for more pages, a larger page_size, less padding or fewer mip_levels";
+  layout.free_aspect = options.pages == 1 && !options.square;
+  return layout;
+}
 
 Result<PagesOfParts> lay_out(const MeshView& mesh, const UnwrapOptions& options, ChartSet& charts,
                              const Context& context) {
@@ -58,13 +73,7 @@ Result<PagesOfParts> lay_out(const MeshView& mesh, const UnwrapOptions& options,
   const double filling = filling_density(charts, texels);
   const double density =
       options.texels_per_unit > 0 ? std::min(options.texels_per_unit, filling) : filling;
-  LayoutOptions layout{options};
-  layout.padding = padding_of(options);
-  layout.alignment = alignment_of(options);
-  layout.minimum_side = 0;
-  layout.outlines = true;
-  layout.remedy = "ask for more pages, a larger page_size, less padding or fewer mip_levels";
-  layout.free_aspect = options.pages == 1 && !options.square;
+  const LayoutOptions layout = layout_options(options);
   const PlainUvs uvs{mesh, options.charts, density};
   if (options.part_gaps) return fill_pages_apart(uvs, layout, charts, context);
   Result<PageLayout> filled = fill_pages(uvs, layout, charts, context);
@@ -108,23 +117,35 @@ UnwrapOptions lightmap_options(double texels_per_metre, double metres_per_unit) 
   return options;
 }
 
-Result<UnwrappedMesh> place_charts(const MeshView& mesh, ChartSet charts,
-                                   const UnwrapOptions& options, const Context& context) {
-  Result<PagesOfParts> laid = lay_out(mesh, options, charts, context);
-  if (!laid.ok()) return laid.status();
-  PageLayout& layout = laid->layout;
+namespace {
 
+// The density of all charts, or the mean one by area where charts keep theirs.
+double mean_density(const ChartSet& charts, const PageLayout& layout) {
+  if (layout.kept_texels.empty()) return layout.placements[0].texels_per_unit.x;
+  double texels = 0, area = 0;
+  for (const ChartPlacement& p : layout.placements) {
+    const double own = charts.charts[p.chart].distortion.uv_area;
+    texels += own * p.texels_per_unit.x * p.texels_per_unit.y;
+    area += own;
+  }
+  return area > 0 ? std::sqrt(texels / area) : 1;
+}
+
+// Finishes the uvs of charts that have their places.
+Result<UnwrappedMesh> finish(const MeshView& mesh, ChartSet charts, PagesOfParts laid,
+                             const UnwrapOptions& options, const Context& context) {
+  PageLayout& layout = laid.layout;
   UnwrappedMesh result;
   result.charts = std::move(charts);
   result.pages = std::move(layout.pages);
   result.utilization = layout.uv_utilization;
-  result.texels_per_unit = layout.placements[0].texels_per_unit.x;
-  result.gaps = laid->left;
-  result.gaps.charts = laid->opened;
+  result.texels_per_unit = mean_density(result.charts, layout);
+  result.gaps = laid.left;
+  result.gaps.charts = laid.opened;
   const ChartedMesh charted(mesh.indices, result.charts);
   FinishedUvs finished =
-      finish_uvs({result.charts, layout.placements, result.pages}, charted.view().uv_indices,
-                 {false, options.mip_levels, options.padding}, context);
+      finish_uvs({result.charts, layout.placements, result.pages, layout.kept_texels},
+                 charted.view().uv_indices, {false, options.mip_levels, options.padding}, context);
   result.thin_triangles = finished.thin_triangles;
   if (result.thin_triangles > 0)
     context.say(fmt::format("{} slivers have no area or are turned over in uvs rounded to floats",
@@ -135,13 +156,45 @@ Result<UnwrappedMesh> place_charts(const MeshView& mesh, ChartSet charts,
   result.triangle_page.reserve(result.charts.triangle_chart.size());
   for (const std::uint32_t chart : result.charts.triangle_chart)
     result.triangle_page.push_back(std::uint32_t(result.placements[chart].page));
+  result.origins = std::move(layout.origins);
   if (context.cancelled()) return Status::cancelled();
   return result;
+}
+
+Result<UnwrappedMesh> unwrap_like(const LikeMesh& like, const UnwrapOptions& options,
+                                  const Context& context) {
+  const MeshView mesh = like.view();
+  Result<ChartSet> charts = make_charts(mesh, like.chart_options(options.charts), context);
+  if (!charts.ok()) return charts.status();
+  Result<PagesOfParts> laid =
+      like.lay_out(layout_options(options), options.part_gaps, *charts, context);
+  if (!laid.ok()) return laid.status();
+  return finish(mesh, std::move(*charts), std::move(*laid), options, context);
+}
+
+}  // namespace
+
+EarlierUvs earlier_uvs(const MeshView& mesh, const UnwrappedMesh& unwrapped) {
+  return {mesh.positions,          mesh.indices,   unwrapped.uvs, unwrapped.indices,
+          unwrapped.triangle_page, unwrapped.pages};
+}
+
+Result<UnwrappedMesh> place_charts(const MeshView& mesh, ChartSet charts,
+                                   const UnwrapOptions& options, const Context& context) {
+  Result<PagesOfParts> laid = lay_out(mesh, options, charts, context);
+  if (!laid.ok()) return laid.status();
+  return finish(mesh, std::move(charts), std::move(*laid), options, context);
 }
 
 Result<UnwrappedMesh> unwrap_mesh(const MeshView& mesh, const UnwrapOptions& options,
                                   const Context& context) {
   if (Status s = check_options(options); !s.ok()) return s;
+  if (options.like) {
+    if (const Status s = weld_mesh(mesh).status(); !s.ok()) return s;
+    const LikeMesh like(mesh, *options.like, {options.charts.max_stretch, padding_of(options)});
+    if (like.nothing().empty()) return unwrap_like(like, options, context);
+    context.say(like.nothing());
+  }
   MeshView view = mesh;
   if (view.texcoord_indices.empty() && view.texcoords.size() == view.positions.size())
     view.texcoord_indices = view.indices;

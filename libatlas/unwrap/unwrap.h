@@ -10,6 +10,7 @@
 #include "libatlas/core/context.h"
 #include "libatlas/core/status.h"
 #include "libatlas/pack/pages.h"
+#include "libatlas/unwrap/like.h"
 #include "libatlas/uvs/placement.h"
 
 namespace atlas {
@@ -34,6 +35,13 @@ struct UnwrapOptions : PageOptions {
   // different charts. Lightmaps need this, because bilinear look-ups would otherwise mix the light
   // of both parts. The uvs stretch a little more there, within ChartOptions::max_stretch.
   bool part_gaps = false;
+  // An earlier state of the mesh with its uvs, or null. Charts whose triangles are unchanged stay
+  // as they were, to the last bit of their uvs; charts of which triangles changed are repaired
+  // where they lie, if max_stretch allows it. What is new takes free room at the same density; the
+  // pages are the earlier ones, and others are added, or they grow, if that is not enough.
+  // texels_per_unit and page_size then count only if nothing is found again, which is told to
+  // Context::warn. Not with keep_uv_charts.
+  const EarlierUvs* like = nullptr;
 };
 
 // The options for lightmaps of game engines: `square` pages, whose mip levels 0 to 2 can be built
@@ -64,7 +72,14 @@ struct UnwrappedMesh {
   GapReport gaps = {};
   ChartSet charts = {};                         // with what was measured on them: distortion, seams
   std::vector<ChartPlacement> placements = {};  // one per chart
+  // One per chart, or empty if nothing of UnwrapOptions::like was found again. Texels of charts
+  // that were kept need not be made again.
+  std::vector<ChartOrigin> origins = {};
 };
+
+// An unwrapping as what the next one of the mesh is to be like. Both arguments, and what the mesh
+// points at, must outlive it.
+EarlierUvs earlier_uvs(const MeshView& mesh, const UnwrappedMesh& unwrapped);
 
 // Unwraps a mesh. Nothing is left out: triangle t of the input is triangle t of the result, with
 // its corners in the same order. Only triangles whose orientation in the mesh is opposite to that

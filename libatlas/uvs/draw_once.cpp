@@ -179,8 +179,12 @@ class Mover : private Drawings {
     DrawnTwice drawn;
     for (std::size_t c = 0; c < twice.size() && !context.cancelled(); ++c) {
       if (twice[c] == 0) continue;
-      if (boxes_.empty()) find_boxes();
       drawn.before += twice[c];
+      if (placed_.stays(c)) {
+        drawn.after += twice[c];
+        continue;
+      }
+      if (boxes_.empty()) find_boxes();
       const Place best = best_place(c, twice[c]);
       drawn.after += best.texels;
       if (best.steps == glm::ivec2(0)) continue;

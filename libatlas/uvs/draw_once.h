@@ -27,9 +27,10 @@ struct DrawnTwice {
 // the texel is drawn twice, and what is rendered into the page there depends on the order of
 // triangles. Such charts are moved by up to a quarter of a texel along each axis, to where no
 // centre or the fewest are hit. They are moved neither over texels that lookups of other charts
-// read nor nearer to the page's edge than a texel. `uvs` are those of page_uvs(), rounded.
-// `corners` are three per triangle of the mesh, indices into `uvs`, counter-clockwise. Once
-// cancelled, charts stay as they are. The result is the same for every thread count.
+// read nor nearer to the page's edge than a texel; charts that stay are not moved. `uvs` are those
+// of page_uvs(), rounded. `corners` are three per triangle of the mesh, indices into `uvs`,
+// counter-clockwise. Once cancelled, charts stay as they are. The result is the same for every
+// thread count.
 DrawnTwice draw_once(const PlacedCharts& placed, std::span<const std::uint32_t> corners,
                      std::vector<Vec2f>& uvs, const Context& context);
 

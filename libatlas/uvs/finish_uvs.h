@@ -30,7 +30,8 @@ struct FinishedUvs {
 // twice (draw_once.h). Where light is baked, now or later, uvs stay within a texel of where the
 // placements say. Charts are moved only where neither light nor mip levels need their place.
 // `corners` are those of the written triangles, three each, indices into the charts' uvs,
-// counter-clockwise. The result is the same for every thread count. It is incomplete if cancelled.
+// counter-clockwise. Charts that stay (PlacedCharts::stays) are rounded, and nothing else. The
+// result is the same for every thread count. It is incomplete if cancelled.
 FinishedUvs finish_uvs(const PlacedCharts& placed, std::span<const std::uint32_t> corners,
                        const FinishOptions& options, const Context& context);
 

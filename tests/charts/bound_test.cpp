@@ -3,8 +3,11 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 #include <vector>
 
+#include "tests/charts/chart_checks.h"
 #include "tests/charts/invariance.h"
 
 namespace atlas::test {
@@ -34,6 +37,38 @@ TEST(Bound, AWideOneSavesChartsAndANarrowOneStretch) {
     EXPECT_LE(narrow.distortion.stretch_999, 1.06 * (1 + 1e-6)) << shape.name;
     EXPECT_LE(wide.distortion.stretch_999, 2 * (1 + 1e-6)) << shape.name;
   }
+}
+
+// A ball with bumps as high as it is wide, closed and smooth.
+Shape bumpy(double height) {
+  Shape shape = sphere(64, 32);
+  for (Vec3f& p : shape.positions) {
+    const double by =
+        1 + height * std::sin(5 * p.x + 1) * std::sin(5 * p.y) * std::sin(5 * p.z + 2);
+    p = {float(by * p.x), float(by * p.y), float(by * p.z)};
+  }
+  return shape;
+}
+
+// What the coarse mesh refuses may lie flat within a wide bound.
+TEST(Bound, GoesOnTradingStretchForSeams) {
+  const Shape shape = bumpy(0.6);
+  double seam = std::numeric_limits<double>::infinity();
+  std::size_t charts = 0;
+  for (const double bound : {1.1, 1.25, 1.5, 2.0, 3.0, 5.0}) {
+    const ChartSet made = bounded(shape, bound);
+    MeshView view;
+    view.positions = shape.positions;
+    view.indices = shape.indices;
+    const ChartFindings found = check_charts(view, made);
+    EXPECT_EQ(found.fault, "") << bound;
+    EXPECT_LE(found.stretch_999, bound * (1 + 1e-6));
+    EXPECT_LE(made.seam_length, 1.02 * seam) << bound;
+    seam = std::min(seam, made.seam_length);
+    charts = made.charts.size();
+    EXPECT_LE(charts, bound < 2 ? 100u : 4u) << bound;
+  }
+  EXPECT_LE(charts, 3u);
 }
 
 Shape with_spikes(Shape shape, std::size_t every, float height) {

@@ -35,6 +35,21 @@ TEST(UvPage, TextsAreUnderstood) {
     EXPECT_EQ(uv_aspect_of(other), 0) << other;
 }
 
+TEST(UvPage, TextsTellSizes) {
+  UvPages one, square, several;
+  one.take("# " + uv_page_text(2048, 512));
+  EXPECT_EQ(one.page_of("any"), (UvPage{0, 2048, 512}));
+  square.take(uv_page_text(1024, 1024));
+  EXPECT_EQ(square.page_of("any"), (UvPage{0, 1024, 1024}));
+  EXPECT_EQ(square.pages_of(), std::vector<UvPage>{square.page_of("any")});
+  several.take(uv_page_text(3, 64, 32));
+  several.take(uv_page_text(1, 32, 64));
+  EXPECT_EQ(several.page_of("page3"), (UvPage{3, 64, 32}));
+  EXPECT_EQ(several.pages_of(), (std::vector<UvPage>{{1, 32, 64}, {3, 64, 32}}));
+  EXPECT_EQ(UvPages().page_of("page3"), UvPage{});
+  EXPECT_TRUE(UvPages().pages_of().empty());
+}
+
 TEST(UvPage, SeveralPagesAreFoundByTheNamesOfMaterials) {
   UvPages pages;
   pages.take("# " + uv_page_text(0, 64, 32));

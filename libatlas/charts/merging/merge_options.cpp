@@ -8,7 +8,7 @@
 namespace atlas {
 namespace {
 
-constexpr double kWidestRatio = 8;  // bounds wider than 3 allow no more mergers
+constexpr double kWidestRatio = 1e6;  // keeps the limits finite
 // Bounds narrower than 1.025 allow no fewer mergers. Below that, the fan's own error on a mesh that
 // unrolls exactly exceeds what merging would allow. With a bound of 1.001, cylinders came out in 9
 // to 39 charts; if this ratio is 0.1 or more, in one or two, while spheres need a thirtieth more.
@@ -26,6 +26,7 @@ MergeOptions merge_options(double max_stretch) {
   merge.limits.stretch_l2 = 1 + (merge.limits.stretch_l2 - 1) * ratio * ratio;
   merge.seam_worth *= ratio * ratio;
   merge.tail_worth *= std::max(1.0, ratio);
+  merge.limits.far_apart *= std::max(1.0, ratio);
   return merge;
 }
 

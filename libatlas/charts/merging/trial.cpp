@@ -27,11 +27,11 @@ constexpr std::size_t kLookAfter = 2;
 constexpr double kFarEnergy = 1.5, kFarWithFlips = 1, kFarArea = 8;
 constexpr double kNearEnergy = 0.9, kNearArea = 3;
 // A start is hopeless if it has flipped triangles and this many times the allowed energy, or if the
-// halves lie farther apart than kFarApart of the square root of their area. Measured on 33 meshes
+// halves lie farther apart than TrialLimits::far_apart. Measured on 33 meshes
 // with some 19 000 trials: this ended 2800 without a descent, which saved half of the time for
 // refused trials, and 2 of these would have come within the limits. Large halves recover more
 // often.
-constexpr double kFoldedStart = 12, kFoldedLargeStart = 60, kFarApart = 0.3;
+constexpr double kFoldedStart = 12, kFoldedLargeStart = 60;
 constexpr std::size_t kLargeHalf = 7;  // cells
 // The limit for halves that meet along several runs. Of some 24 000 such trials that began with
 // flips, 190 came within the limits, for a quarter of the time of all trials (200 meshes). They are
@@ -161,7 +161,7 @@ Trial::Start Trial::judge_start(std::size_t smaller_half, const TrialLimits& lim
                                 TrialOutcome& outcome) {
   const double allowed = area_ * (limits.stretch_l2 * limits.stretch_l2 - 1);
   const double misfit = area_ > 0 ? misfit_ / std::sqrt(area_) : 0;
-  if (!flipped_ && misfit > kCloseFit && misfit <= kFarApart) return Start::open;
+  if (!flipped_ && misfit > kCloseFit && misfit <= limits.far_apart) return Start::open;
   const bool whole = measure_stretch(limits.stretch_high, outcome);
   if (whole && misfit <= kCloseFit && outcome.energy <= kSettledStart * allowed &&
       outcome.high_area <= limits.high_area) {
@@ -171,7 +171,7 @@ Trial::Start Trial::judge_start(std::size_t smaller_half, const TrialLimits& lim
   const double most = !disc                       ? kFoldedRing
                       : smaller_half < kLargeHalf ? kFoldedStart
                                                   : kFoldedLargeStart;
-  if (misfit <= kFarApart && (whole || outcome.energy <= most * allowed)) return Start::open;
+  if (misfit <= limits.far_apart && (whole || outcome.energy <= most * allowed)) return Start::open;
   // The least energy that ends a descent: a start says little about where it leads.
   outcome.energy = kLastFall * kFarWithFlips * allowed;
   outcome.high_area = 0;

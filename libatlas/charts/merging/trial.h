@@ -23,7 +23,10 @@ struct TrialLimits {
   // The least share of its smallest rectangle that it fills, unless that rectangle is no larger
   // than box.
   double fill = 0.58;
-  double box = 0;        // area of both charts' own rectangles together
+  double box = 0;  // area of both charts' own rectangles together
+  // A start whose halves lie farther apart than this share of the square root of their area is
+  // hopeless.
+  double far_apart = 0.3;
   bool unrolls = false;  // both charts unroll: where they fit each other, no descent is needed
 };
 

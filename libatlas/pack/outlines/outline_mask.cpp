@@ -179,15 +179,15 @@ Mask rasterize(const ChartOutline& outline, const RasterOptions& options, Vec2d&
   // Loops are closed: every end begins an edge.
   for (const auto& e : outline.edges) reach(e.from);
   for (const auto& t : outline.loose) std::for_each(t.begin(), t.end(), reach);
-  // The chart's lower left corner lies one padding inside that of its box, so no cell is wasted
-  // there.
-  origin = {options.padding - bx.low, options.padding - by.low};
+  // Without a shift, the chart's lower left corner lies one padding inside that of its box, so no
+  // cell is wasted there.
+  origin = {options.padding - bx.low + options.shift.x, options.padding - by.low + options.shift.y};
   const auto place = [&](Vec2d p) {
     p = turn(p);
     return Vec2d{p.x + origin.x, p.y + origin.y};
   };
   const auto cells = [&](const Bounds& b) {
-    return static_cast<std::int32_t>((b.high - b.low + 2 * options.padding) / options.cell) + 2;
+    return static_cast<std::int32_t>((b.high - b.low + 2 * options.padding) / options.cell) + 3;
   };
   RunSet set(cells(by));
   set.items.reserve(4 * (outline.edges.size() + outline.loose.size()));

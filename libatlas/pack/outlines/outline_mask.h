@@ -35,6 +35,9 @@ struct Mask {
 struct RasterOptions {
   double factor = 1, angle = 0;
   std::int32_t padding = 1, cell = 1;
+  // How far the chart's lower left corner lies beyond the padding, texels, 0 .. cell: for charts
+  // that must keep their place between the cells of a page.
+  Vec2d shift = {};
 };
 
 // Returns all cells whose open square, widened by the padding on each side, meets a triangle. A

@@ -245,6 +245,28 @@ void Relaxer::smooth(ElementView elements, const CornerLists& corners, const Pla
   for (int i = 0; i < sweeps; ++i) sweep();
 }
 
+bool Relaxer::settle(ElementView elements, const CornerLists& corners,
+                     std::span<const std::uint32_t> vertices, std::span<Vec2d> uvs) {
+  constexpr int untangling_sweeps = 40, sweeps = 30;
+  constexpr double least_gain = 1e-4;  // of the best sweep's
+  begin(elements, corners, uvs);
+  vertices_.assign(vertices.begin(), vertices.end());
+  triangles_.resize(elements.size());
+  std::iota(triangles_.begin(), triangles_.end(), 0u);
+  mean_area_ = 0;
+  for (std::size_t t = 0; t < elements.size(); ++t) mean_area_ += elements[t].area();
+  mean_area_ /= double(std::max<std::size_t>(elements.size(), 1));
+  if (!(least_determinant() > 0) && !untangle(untangling_sweeps)) return false;
+  energy_ = VertexEnergy::symmetric_dirichlet;
+  double best = 0;
+  for (int i = 0; i < sweeps; ++i) {
+    const double gain = sweep();
+    if (!(gain > least_gain * best)) break;
+    best = std::max(best, gain);
+  }
+  return true;
+}
+
 void Relaxer::measure_again(std::span<const std::uint32_t> triangles) {
   for (const std::uint32_t t : triangles) {
     const SingularValues s = singular_values(jacobian(t));

@@ -67,6 +67,11 @@ class Relaxer {
   void smooth(ElementView elements, const CornerLists& corners, const Places& places,
               std::span<Vec2d> uvs);
 
+  // Moves these vertices, and no others: turns flipped triangles, and then lowers the symmetric
+  // Dirichlet energy of all triangles. Returns whether all triangles are positive.
+  bool settle(ElementView elements, const CornerLists& corners,
+              std::span<const std::uint32_t> vertices, std::span<Vec2d> uvs);
+
   // Lowers max(s1, 1/s2) of the uv-to-surface map's singular values, at the area-preserving scale,
   // where it exceeds `bound`, until 99.9 % of the area is within it; most of the other 0.1 % is
   // spared. Only vertices near those triangles move. All triangles must be positive, and stay so.

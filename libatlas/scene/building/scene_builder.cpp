@@ -345,8 +345,14 @@ void SceneBuilder::place_materials(const ReadOptions& options, Scene& scene) {
 
 void SceneBuilder::place_uv_aspects(LoadedScene& loaded) const {
   std::vector<double> aspects;
-  for (const RawMaterial& m : materials)
-    aspects.push_back(uv_pages.aspect_of(m.name, m.page_set < 0 ? m.uv_set : m.page_set));
+  for (const RawMaterial& m : materials) {
+    const auto set = m.page_set < 0 ? m.uv_set : m.page_set;
+    aspects.push_back(uv_pages.aspect_of(m.name, set));
+    loaded.material_uv_pages.push_back(uv_pages.page_of(m.name, set));
+  }
+  loaded.uv_pages = uv_pages.pages_of(materials.empty()           ? 0
+                                      : materials[0].page_set < 0 ? materials[0].uv_set
+                                                                  : materials[0].page_set);
   if (aspects.empty()) aspects.push_back(uv_pages.aspect_of({}));
   loaded.uv_aspect = aspects[0];
   if (std::all_of(aspects.begin(), aspects.end(), [&](double a) { return a == aspects[0]; }))

@@ -91,6 +91,7 @@ class SceneBuilder {
   bool wants_normals = false;                     // false: normals are ignored, whatever they hold
   bool wants_polygons = false;                    // ReadOptions::polygons
   bool wants_rest = false;                        // ReadOptions::rest
+  bool wants_told_uvs = false;                    // ReadOptions::told_uvs
   bool wants_lightmap = false;                    // ReadOptions::lightmap
   float light_white = 0;                          // SceneLightmap::white, of light_page
   std::shared_ptr<const SceneLightmap> lightmap;  // Scene::lightmap

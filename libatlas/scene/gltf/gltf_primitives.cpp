@@ -136,11 +136,23 @@ int GltfPrimitives::page_set(const tinygltf::Primitive& raw, std::uint32_t mater
   return m.uv_set;
 }
 
+// Returns the set whose uvs are read: that of the material's textures, or with
+// ReadOptions::told_uvs the last one whose page is told.
+int GltfPrimitives::uv_set(const tinygltf::Primitive& raw, std::uint32_t material) const {
+  const RawMaterial& m = builder_.materials[material];
+  for (int set = kMostUvSets - 1; set >= 0 && builder_.wants_told_uvs; --set)
+    if (builder_.uv_pages.aspect_of(m.name, set) > 0 &&
+        gltf_attribute(raw.attributes, fmt::format("TEXCOORD_{}", set)) >= 0)
+      return set;
+  return m.uv_set;
+}
+
 Status GltfPrimitives::add_texcoords(const tinygltf::Primitive& raw, Primitive& primitive) {
-  const int set = builder_.materials[primitive.material].uv_set;
+  const int set = uv_set(raw, primitive.material);
   const int accessor = gltf_attribute(raw.attributes, fmt::format("TEXCOORD_{}", set));
   if (accessor < 0) return {};
-  take_page_set(page_set(raw, primitive.material), builder_.materials[primitive.material]);
+  take_page_set(builder_.wants_told_uvs ? set : page_set(raw, primitive.material),
+                builder_.materials[primitive.material]);
   const auto [at, is_new] = texcoords_.try_emplace(accessor);
   if (is_new) {
     auto uvs = gltf_floats(model_, accessor, 2);

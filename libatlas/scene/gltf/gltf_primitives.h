@@ -57,6 +57,7 @@ class GltfPrimitives {
   Result<Vertices> add_vertices(const tinygltf::Node& node, const tinygltf::Primitive& raw,
                                 const glm::dmat4& matrix, const std::string& where);
   int page_set(const tinygltf::Primitive& raw, std::uint32_t material) const;
+  int uv_set(const tinygltf::Primitive& raw, std::uint32_t material) const;
   Status add_texcoords(const tinygltf::Primitive& raw, Primitive& primitive);
   Status add_corners(const tinygltf::Primitive& raw, int mode, Primitive& primitive);
   void finish_values();
