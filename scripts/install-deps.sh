@@ -1,10 +1,11 @@
 #!/bin/sh
 # Installs what libatlas needs, and only what is missing, from Debian's (12 or newer) or Ubuntu's
 # (24.04 or newer) packages.
-# Usage: scripts/install-deps.sh [build|test|all|windows]     (all by default)
+# Usage: scripts/install-deps.sh [build|test|all|windows|blender]     (all by default)
 #   build    compiler, tools and libraries for the library, the programs and the sample scene
 #   test     what the tests and benchmarks need on top
 #   windows  what scripts/windows.sh needs on top
+#   blender  what the heavy tests of the Blender extension need on top
 set -eu
 
 build_packages="
@@ -22,13 +23,15 @@ test_packages="
 test_packages_if_any="view3dscene chromium python3-websocket clang-format clang-tidy emscripten nodejs
   python3-numpy python3-pytest python3-matplotlib"
 windows_packages="g++-mingw-w64-x86-64-posix wine64 googletest"
+blender_packages="blender xvfb xauth python3-venv"
 
 case "${1:-all}" in
   build) wanted="$build_packages" if_any="" ;;
   test) wanted="$test_packages" if_any="$test_packages_if_any" ;;
   all) wanted="$build_packages $test_packages" if_any="$test_packages_if_any" ;;
   windows) wanted="$windows_packages" if_any="" ;;
-  *) echo "usage: scripts/install-deps.sh [build|test|all|windows]" >&2; exit 2 ;;
+  blender) wanted="$blender_packages" if_any="" ;;
+  *) echo "usage: scripts/install-deps.sh [build|test|all|windows|blender]" >&2; exit 2 ;;
 esac
 
 if ! command -v apt-get >/dev/null 2>&1; then

@@ -36,7 +36,9 @@ def unwrap_and_measure(name: str, mesh: Path, measure: Path, timeout: int, runs:
         command = [sys.executable, HERE / "unwrappers.py", name, mesh, target]
         told = None
         for _ in range(runs):
-            done = subprocess.run(command, capture_output=True, text=True, check=False, preexec_fn=lambda: limit(timeout))
+            done = subprocess.run(
+                command, capture_output=True, text=True, check=False, preexec_fn=lambda: limit(timeout)
+            )
             if done.returncode == -signal.SIGXCPU:
                 return {"failed": f"over {timeout} s"}
             if done.returncode != 0:
@@ -83,7 +85,10 @@ def summary(rows: dict[str, dict[str, dict]]) -> str:
 
 def table(rows: dict[str, dict[str, dict]]) -> str:
     names = list(next(iter(rows.values())))
-    lines = ["| mesh | triangles | | charts | L2 | seam | page use | defects | CPU s |", "|---|---|---|---|---|---|---|---|---|"]
+    lines = [
+        "| mesh | triangles | | charts | L2 | seam | page use | defects | CPU s |",
+        "|---|---|---|---|---|---|---|---|---|",
+    ]
     for mesh, by in rows.items():
         triangles = next((row["triangles"] for row in by.values() if "failed" not in row), 0)
         for place, name in enumerate(names):
@@ -111,7 +116,9 @@ def main() -> None:
     meshes = sorted(options.models.glob("*.obj"))
     if not meshes:
         parser.error(f"{options.models} holds no .obj file")
-    rows: dict[str, dict[str, dict]] = json.loads(options.json.read_text()) if options.json and options.json.exists() else {}
+    rows: dict[str, dict[str, dict]] = (
+        json.loads(options.json.read_text()) if options.json and options.json.exists() else {}
+    )
     for mesh in meshes:
         rows.setdefault(mesh.stem, {})
         for name in options.only:

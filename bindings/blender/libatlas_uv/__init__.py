@@ -1,5 +1,9 @@
 """Unwrapping and packing by libatlas in Blender, from 3.4 on."""
 
+import bpy
+
+from . import wheel
+
 bl_info = {  # for Blender before 4.2, which does not read blender_manifest.toml
     "name": "libatlas UV",
     "description": "Unwraps within a bound on stretch, packs islands, and makes UVs for lightmaps",
@@ -9,10 +13,6 @@ bl_info = {  # for Blender before 4.2, which does not read blender_manifest.toml
     "location": "UV Editor > Sidebar > libatlas; menus UV and Object",
     "category": "UV",
 }
-
-import bpy
-
-from . import wheel
 
 MENUS = {"IMAGE_MT_uvs": "draw_uv_menu", "VIEW3D_MT_uv_map": "draw_uv_menu", "VIEW3D_MT_object": "draw_object_menu"}
 

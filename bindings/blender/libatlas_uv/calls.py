@@ -216,7 +216,9 @@ def _of_meshes(meshes, packed, page_size):
 
 def _pack_options(options):
     """Those of packing among those of unwrapping."""
-    chosen = {name: options[name] for name in ("page_size", "padding", "alignment", "allow_rotation") if name in options}
+    chosen = {
+        name: options[name] for name in ("page_size", "padding", "alignment", "allow_rotation") if name in options
+    }
     return {**chosen, "preset": options.get("packing", "standard")}
 
 

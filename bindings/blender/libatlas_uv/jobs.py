@@ -48,8 +48,8 @@ class JobOperator:
         manager.progress_begin(0, 1)
         try:
             work = self.prepare(context)
-            return self._finished(context, work(lambda stage, fraction: manager.progress_update(fraction)))
-        except (Refused, NotImplementedError, MemoryError) as error:
+            return self._finished(work(lambda stage, fraction: manager.progress_update(fraction)))
+        except (Refused, MemoryError) as error:
             return self._refused(error)
         finally:
             manager.progress_end()
@@ -59,12 +59,12 @@ class JobOperator:
             return self.execute(context)
         try:
             self._job = Job(self.prepare(context))
-        except Refused as error:
+        except (Refused, MemoryError) as error:
             return self._refused(error)
         self._job.start()
         self._job.join(0.1)
         if not self._job.is_alive():
-            return self._ended(context)
+            return self._ended()
         context.window_manager.progress_begin(0, 1)
         self._timer = context.window_manager.event_timer_add(0.05, window=context.window)
         context.window_manager.modal_handler_add(self)
@@ -77,10 +77,12 @@ class JobOperator:
             return {"RUNNING_MODAL"}  # nobody edits the mesh meanwhile
         if self._job.is_alive():
             context.window_manager.progress_update(self._job.fraction)
-            context.workspace.status_text_set(f"{self.bl_label}: {self._job.stage} {self._job.fraction:.0%}   Esc: cancel")
+            context.workspace.status_text_set(
+                f"{self.bl_label}: {self._job.stage} {self._job.fraction:.0%}   Esc: cancel"
+            )
             return {"RUNNING_MODAL"}
         self._stop_waiting(context)
-        return self._ended(context)
+        return self._ended()
 
     def cancel(self, context):
         """The window is closed."""
@@ -92,9 +94,9 @@ class JobOperator:
         context.window_manager.progress_end()
         context.workspace.status_text_set(None)
 
-    def _ended(self, context):
+    def _ended(self):
         self._job.join()
-        error, self_result = self._job.error, self._job.result
+        error = self._job.error
         if isinstance(error, Cancelled):
             self.report({"INFO"}, f"{self.bl_label}: cancelled")
             return {"CANCELLED"}
@@ -102,9 +104,9 @@ class JobOperator:
             return self._refused(error)
         if error is not None:
             raise error
-        return self._finished(context, self_result)
+        return self._finished(self._job.result)
 
-    def _finished(self, context, laid):
+    def _finished(self, laid):
         try:
             self.finish(laid)
         except Refused as error:

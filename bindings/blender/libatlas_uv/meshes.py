@@ -36,7 +36,7 @@ def read(item, *, selected_uvs=False, layer=None, world=lambda item: True):
     with _as_mesh(item.data) as mesh:
         chosen = np.ones(len(mesh.polygons), bool)
         if item.data.is_editmode:
-            chosen = _column(mesh.polygons, "select", bool) & ~_column(mesh.polygons, "hide", bool)
+            chosen = _column(mesh.polygons, "select", bool)  # which no hidden face is
         whole = _all_faces(item, mesh, layer or _active(mesh), world(item))
     faces = whole.some(chosen)
     if not selected_uvs:
@@ -112,9 +112,7 @@ def _all_faces(item, mesh, layer, world):
     place[loops] = np.arange(len(loops))
     vertices = _column(mesh.vertices, "co", np.float32, 3)
     if world:
-        matrix = np.array(item.matrix_world.to_3x3(), np.float32)
-        # A mirrored object has mirrored faces; turned inside out they are as they were.
-        vertices = vertices @ (matrix.T if np.linalg.det(matrix) >= 0 else -matrix.T)
+        vertices = vertices @ np.array(item.matrix_world.to_3x3(), np.float32).T
     mesh.calc_loop_triangles()
     uvs = np.zeros((len(loops), 2), np.float32)
     pinned = np.zeros(len(loops), bool)

@@ -17,7 +17,11 @@ PRESETS = [
 
 def _page_size(default):
     return IntProperty(
-        name="Page Size", description="Side of the square image in texels, a power of two", default=default, min=64, max=16384
+        name="Page Size",
+        description="Side of the square image in texels, a power of two",
+        default=default,
+        min=64,
+        max=16384,
     )
 
 
@@ -27,7 +31,11 @@ def _padding():
 
 def _pages():
     return IntProperty(
-        name="Pages", description="The most images to use. Page p lies on the UDIM tile 1001 + p", default=1, min=1, max=100
+        name="Pages",
+        description="The most images to use. Page p lies on the UDIM tile 1001 + p",
+        default=1,
+        min=1,
+        max=100,
     )
 
 
@@ -64,7 +72,11 @@ class UV_OT_libatlas_unwrap(JobOperator, Operator):
     bl_options = {"REGISTER", "UNDO"}
 
     max_stretch: FloatProperty(
-        name="Max Stretch", description="Bound on stretch over 99.9 % of each chart's area", default=1.25, min=1.001, soft_max=2
+        name="Max Stretch",
+        description="Bound on stretch over 99.9 % of each chart's area",
+        default=1.25,
+        min=1.001,
+        soft_max=2,
     )
     charts: _preset("Charts", "Effort for charts")
     crease_degrees: FloatProperty(
@@ -80,8 +92,12 @@ class UV_OT_libatlas_unwrap(JobOperator, Operator):
         min=0,
         max=0.99,
     )
-    split_at_materials: BoolProperty(name="Split at Materials", description="A chart holds one material only", default=False)
-    keep_uvs: BoolProperty(name="Keep UVs", description="Keep the islands that are there where they are usable", default=False)
+    split_at_materials: BoolProperty(
+        name="Split at Materials", description="A chart holds one material only", default=False
+    )
+    keep_uvs: BoolProperty(
+        name="Keep UVs", description="Keep the islands that are there where they are usable", default=False
+    )
     page_size: _page_size(2048)
     padding: _padding()
     pages: _pages()
@@ -150,7 +166,9 @@ custom properties"""
     bl_options = {"REGISTER", "UNDO"}
 
     uv_map: StringProperty(name="UV Map", description="Its name; made where there is none", default="Lightmap")
-    texels_per_metre: FloatProperty(name="Texels per Metre", description="0: as many as the page holds", default=0, min=0)
+    texels_per_metre: FloatProperty(
+        name="Texels per Metre", description="0: as many as the page holds", default=0, min=0
+    )
     page_size: _page_size(1024)
 
     @classmethod
@@ -161,7 +179,9 @@ custom properties"""
         if not self.uv_map:
             raise Refused("UV Map: a name is needed")
         items = meshes.objects_to_unwrap(context)
-        self.shown = {item.data: [other for other in context.selected_objects if other.data == item.data] for item in items}
+        self.shown = {
+            item.data: [other for other in context.selected_objects if other.data == item.data] for item in items
+        }
         faces = _read(self, items, layer=self.uv_map, world=lambda item: len(self.shown[item.data]) == 1)
         for item, part in self.read:
             part.pinned[:] = False  # all is made anew

@@ -43,4 +43,6 @@ def _of_this_system(wheels):
         tag = wheel.stem.rpartition("-")[2]
         if system in tag and tag.endswith(processor):
             return wheel
-    raise ImportError(f"libatlas: no wheel for {system}{processor} in this extension; it has {[w.name for w in wheels]}")
+    raise ImportError(
+        f"libatlas: no wheel for {system}{processor} in this extension; it has {[w.name for w in wheels]}"
+    )

@@ -199,7 +199,11 @@ class Extension(unittest.TestCase):
             for face in item.data.polygons:
                 loops = list(face.loop_indices)
                 self.assertEqual((before[loops] == after[loops]).all(), not chosen[face.index], face.index)
-            picked = [triangle for triangle in zip(triangles_of(item), item.data.loop_triangles) if chosen[triangle[1].polygon_index]]
+            picked = [
+                triangle
+                for triangle in zip(triangles_of(item), item.data.loop_triangles)
+                if chosen[triangle[1].polygon_index]
+            ]
             self.assertEqual(most_in_a_texel(np.array([uvs for uvs, _ in picked])), 1)
             bpy.ops.object.mode_set(mode="EDIT")
         bpy.ops.object.mode_set(mode="OBJECT")
@@ -352,7 +356,11 @@ class Extension(unittest.TestCase):
         self.assertTrue((uvs_of(item) == before).all())
 
     def test_a_mesh_without_uvs_gets_a_map(self):
-        item = cage("tent", [(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0), (0.5, 0.5, 1)], [(0, 1, 4), (1, 2, 4), (2, 3, 4), (3, 0, 4)])
+        item = cage(
+            "tent",
+            [(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0), (0.5, 0.5, 1)],
+            [(0, 1, 4), (1, 2, 4), (2, 3, 4), (3, 0, 4)],
+        )
         select(item)
         with self.assertRaisesRegex(RuntimeError, "unwrap first"):
             bpy.ops.uv.libatlas_pack_islands()

@@ -29,8 +29,12 @@ def needed(program, package):
 
 def installing(command):
     """Runs pip, or what runs it; skips where no package index can be reached."""
-    done = subprocess.run(list(map(str, command)), stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, check=False)
-    if done.returncode != 0 and re.search("No matching distribution|Connection|Temporary failure|ensurepip", done.stdout):
+    done = subprocess.run(
+        list(map(str, command)), stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, check=False
+    )
+    if done.returncode != 0 and re.search(
+        "No matching distribution|Connection|Temporary failure|ensurepip", done.stdout
+    ):
         skip("pip cannot install what this needs")
     if done.returncode != 0:
         sys.exit(done.stdout)
@@ -39,7 +43,8 @@ def installing(command):
 def python_with_bpy(build):
     environment = build / "bindings/blender/bpy"
     python = environment / "bin/python"
-    wanted = [line for line in (ROOT / "benchmarks/python/requirements.txt").read_text().split() if re.match("bpy|numpy", line)]
+    pinned = (ROOT / "benchmarks/python/requirements.txt").read_text().splitlines()
+    wanted = [line for line in pinned if line.startswith(("bpy==", "numpy=="))]
     if not python.exists():
         installing([sys.executable, "-m", "venv", environment])
     installing([python, "-m", "pip", "install", "-q", *wanted])
@@ -69,7 +74,9 @@ def main():
         for name in ("CONFIG", "SCRIPTS", "DATAFILES"):
             environment[f"BLENDER_USER_{name}"] = str(Path(folder, name.lower()))
             Path(folder, name.lower()).mkdir()
-        done = subprocess.run(command, env=environment, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, check=False)
+        done = subprocess.run(
+            command, env=environment, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, check=False
+        )
     print(done.stdout)
     # Blender ends with 0 whatever a script does in some versions, so the script has to say that all went well.
     if done.returncode != 0 or "\npassed\n" not in done.stdout or "Traceback" in done.stdout:

@@ -159,6 +159,11 @@ def test_the_package_is_one_folder_with_its_wheels(tmp_path):
         manifest = archive.read("libatlas_uv/blender_manifest.toml").decode()
     assert all(name.startswith("libatlas_uv/") for name in names) and "libatlas_uv/__init__.py" in names
     assert "libatlas_uv/wheels/libatlas-0.1.0-py3-none-win_amd64.whl" in names
-    assert "platforms = ['linux-x64', 'windows-x64']" in manifest and "./wheels/libatlas-0.1.0-py3-none-win_amd64.whl" in manifest
-    wrong = subprocess.run([*command, tmp_path / "numpy-1-py3-none-win_amd64.whl"], capture_output=True, text=True, check=False)
+    assert (
+        "platforms = ['linux-x64', 'windows-x64']" in manifest
+        and "./wheels/libatlas-0.1.0-py3-none-win_amd64.whl" in manifest
+    )
+    wrong = subprocess.run(
+        [*command, tmp_path / "numpy-1-py3-none-win_amd64.whl"], capture_output=True, text=True, check=False
+    )
     assert wrong.returncode != 0 and "no wheel of libatlas" in wrong.stderr
