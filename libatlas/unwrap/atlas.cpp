@@ -317,6 +317,9 @@ Result<UnwrappedAtlas> Atlas::unwrap(const UnwrapOptions& options, const Context
   if (object_count_ > 1) view.objects = objects_;
   const bool blocks = std::any_of(instances_.begin(), instances_.end(),
                                   [](const auto& densities) { return !densities.empty(); });
+  if (blocks && options.like)
+    return Status(ErrorCode::bad_option,
+                  "atlas: like is given, but meshes are instanced (leave one of them out)");
   std::vector<std::vector<MeshInstance>> instances;
   Result<UnwrappedMesh> all =
       blocks ? unwrap_in_blocks(options, context, instances) : unwrap_mesh(view, options, context);

@@ -119,7 +119,8 @@ class Atlas {
 
   // Unwraps the meshes as unwrap_mesh() would one mesh that consists of them, and may be called
   // again, with other options. Texcoords are used for ChartOptions::keep_uv_charts; meshes without
-  // them get charts then, too. Errors: those of unwrap_mesh(); bad_input where there is no mesh.
+  // them get charts then, too. UnwrapOptions::like is of all meshes, not with instances. Errors:
+  // those of unwrap_mesh(); bad_input where there is no mesh.
   Result<UnwrappedAtlas> unwrap(const UnwrapOptions& options, const Context& context) const;
 
   // Returns the seams of a mesh, in the form of MeshView::seams, or StridedMesh::seams of polygons:

@@ -13,6 +13,7 @@
 #include <string>
 #include <vector>
 
+#include "libatlas/unwrap/atlas.h"
 #include "libatlas/unwrap/unwrap.h"
 #include "tests/support/atlas_measure.h"
 #include "tests/support/shape_view.h"
@@ -347,6 +348,25 @@ TEST(Like, ABumpIsRepairedAroundIt) {
   EXPECT_LT(others, was.size());
   EXPECT_EQ(stayed(before, now, was), others);
   for (const Chart& chart : now.charts.charts) EXPECT_LE(chart.distortion.stretch_999, 1.2501);
+}
+
+TEST(Like, WorksForSeveralMeshesButNotForInstances) {
+  const Shape a = torus(40, 24), b = moved(torus(40, 24), 1, {0.5f, 0, 0});
+  const Shape both = together(a, b);
+  const UnwrappedMesh before = made_of(both);
+  const EarlierUvs earlier = earlier_uvs(view_of(both), before);
+  UnwrapOptions options;
+  options.like = &earlier;
+  Atlas atlas, instanced;
+  ASSERT_TRUE(atlas.add(view_of(a)).ok());
+  ASSERT_TRUE(atlas.add(view_of(b)).ok());
+  const Result<UnwrappedAtlas> made = atlas.unwrap(options, {});
+  ASSERT_TRUE(made.ok()) << made.status().message();
+  EXPECT_EQ(count(made->all(), ChartOrigin::made), 0u);
+  ASSERT_TRUE(instanced.add_instances(view_of(a), 2).ok());
+  const Result<UnwrappedAtlas> refused = instanced.unwrap(options, {});
+  ASSERT_FALSE(refused.ok());
+  EXPECT_EQ(refused.status().code(), ErrorCode::bad_option);
 }
 
 TEST(Like, ErrorsNameWhatIsWrong) {

@@ -91,7 +91,7 @@ TEST_F(ExportFlags, LikeKeepsAnEarlierExport) {
                     "nothing of the earlier uvs stays"));
   const RunResult lit =
       run(fmt::format("{0}/box.obj -o {0}/l.obj --like {0}/old.obj", dir_.string()));
-  EXPECT_EQ(lit.exit_code, 1);
+  EXPECT_EQ(lit.exit_code, 2);
   EXPECT_TRUE(holds(lit.output, "--like: this scene carries light")) << lit.output;
 }
 
