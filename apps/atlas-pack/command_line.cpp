@@ -80,12 +80,11 @@ void add_effort_options(CLI::App& app, PackCommand& c) {
              throw CLI::ValidationError("--budget", e);
          })
       ->type_name("TIME")
-      ->description(
-          "Time for --preset best, e.g. 1s or 500ms, without a unit seconds (mesh: on one page)");
+      ->description("Time for --preset best, e.g. 1s or 500ms, without a unit seconds");
   app.add_option(
          "--effort", c.options.effort,
-         "Layouts tried at most by --preset best; with it results repeat exactly (mesh: on one "
-         "page); 0: no limit")
+         "Layouts tried at most by --preset best (mesh: its work, about milliseconds); with it "
+         "results repeat exactly; 0: no limit")
       ->capture_default_str()
       ->check(within(0, 1e18, "0 or more"));
   app.add_option("--seed", c.options.seed, "Seed of --preset best")

@@ -47,11 +47,12 @@ struct FitOptions : PageOptions {
   // possible. This overrides power_of_two and square. Without shapes it does nothing else. With
   // several pages it also turns press_pages off.
   bool free_aspect = false;
-  // Limits of `best` on a single page of outlines. The result depends on effort and seed only,
-  // unless effort is 0 and time is the limit.
+  // Limits of `best` for outlines. The result depends on effort and seed only, unless effort is 0
+  // and time is the limit. More of either never gives a worse fit, time on a machine that is as
+  // fast.
   double time_budget = 1.0;  // wall time in seconds, at least 0 or infinite
-  // Maximum number of layouts that are tried; 0: no limit. It is checked every few hundred layouts.
-  // A layout that takes long counts as several.
+  // Work, in half a million words that are examined, about a millisecond each; 0: no limit. A round
+  // of the search is only begun if it leaves some of it; the first always is.
   std::uint64_t effort = 0;
   std::uint64_t seed = 1;
   // For fit_boxes_or_outlines: the area that the shapes cover at scale 1, in square texels. 0: the

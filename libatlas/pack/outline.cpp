@@ -5,8 +5,10 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <limits>
 #include <numbers>
 
+#include "libatlas/core/clock.h"
 #include "libatlas/core/is_enumerator.h"
 #include "libatlas/core/parallel.h"
 #include "libatlas/pack/nesting/grid_choice.h"
@@ -104,15 +106,17 @@ OnePage search_one_page(std::span<const Piece> pieces, const Grid& grid, const O
   if (o.preset == PackPreset::fast) s.layouts = 1;
   if (o.preset == PackPreset::standard) s.work = static_cast<std::uint64_t>(kStandardWork);
   const std::size_t chains = o.preset == PackPreset::best ? 4 : 1;
+  double seconds = std::numeric_limits<double>::infinity();
   if (o.preset == PackPreset::best) {
     // If there are fewer threads than chains, the chains run one after another and share the time.
-    s.seconds = o.time_budget * std::min(1.0, double(thread_count(context)) / double(chains));
+    seconds = o.time_budget * std::min(1.0, double(thread_count(context)) / double(chains));
     if (o.effort) s.layouts = std::max<std::uint64_t>(1, o.effort / chains);
   }
   std::vector<pack::NestSearchResult> found(chains);
   parallel_chains(context, chains, [&](std::size_t c) {
     pack::NestSearchOptions own = s;
     own.seed = s.seed * 0x10001 + c;
+    own.deadline = wall_seconds() + seconds;
     found[c] = pack::search_nest(pieces, start, own, context);
   });
   OnePage page;

@@ -8,6 +8,7 @@
 
 #include "libatlas/charts/tiles.h"
 #include "libatlas/core/progress.h"
+#include "libatlas/pack/fitting/fit_search.h"
 #include "libatlas/unwrap/layout_effort.h"
 #include "libatlas/unwrap/least_room.h"
 
@@ -32,14 +33,18 @@ constexpr double kHopeless = 0.5;
 // How long charts may be, in the order tried, relative to the side of a square page that all charts
 // would fill without gaps.
 constexpr std::array kLongestSides{1.1, 0.9, 0.75, 0.6, 0.45};
+// The work of laying out the pieces of one way of cutting, as a share of that for the whole charts.
+constexpr double kOfTrial = 0.125;
+// With the rest of the work, pieces cover up to kMostWorked times as much.
+constexpr double kMostWorked = 1.08;
 // Pieces are worth it if they cover more than the charts did, by at least kLeastGain (of one page)
 // or kLeastGainSeveral (of several), and by at least kSeamPrice for each square root of the
 // surface's area by which seams become longer. For poorly filled pages, kOfPoor of that is enough
 // if they are then no longer poorly filled.
 constexpr double kLeastGain = 0.1, kLeastGainSeveral = 0.05, kSeamPrice = 0.06, kOfPoor = 0.5;
 // Pressing seldom lets charts on several pages cover more than kMostPressed times as much. At most
-// kMostVain ways of cutting are pressed in vain. With more than kFewAPage charts per page, pressing
-// takes seconds for each way, so such pages only need kFilledFree.
+// kMostVain ways of cutting are pressed or worked on in vain. With more than kFewAPage charts per
+// page, pressing takes seconds for each way, so such pages only need kFilledFree.
 constexpr double kMostPressed = 1.15;
 constexpr int kMostVain = 2;
 constexpr std::size_t kFewAPage = 16;
@@ -91,7 +96,7 @@ struct Goal {
 struct Way {
   ChartSet charts;
   WorkedLayout layout;
-  bool pressed = false;
+  bool pressed = false, worked = false;
 };
 
 class PageFiller {
@@ -104,9 +109,8 @@ class PageFiller {
         context_(context),
         goal_{options_, charts.distortion.uv_area * uvs.density * uvs.density} {
     // Several pages are pressed only if it may decide between ways, and at the end, because it
-    // takes a second or more for each way. For the same reason, more work goes into a single page
-    // only if it may make it full enough, and at the end.
-    unpressed_.press_pages = unpressed_.more_work = false;
+    // takes a second or more for each way.
+    unpressed_.press_pages = false;
   }
 
   // Replaces the charts by those that are laid out.
@@ -115,13 +119,11 @@ class PageFiller {
     if (!first.ok()) return first.status();
     Way best{charts, std::move(*first)};
     if (may_cut(charts) && !goal_.reached(best.layout)) {
-      if (Status s = work(best, unpressed_, goal_.full(best.layout)); !s.ok()) return s;
       if (Status s = press(best, options_, kFilledFree); !s.ok()) return s;
       if (!goal_.reached(best.layout)) {
         if (Status s = cut(charts, best); !s.ok()) return s;
       }
     }
-    if (Status s = work(best, unpressed_, 0); !s.ok()) return s;
     if (Status s = press(best, options_, 0); !s.ok()) return s;
     charts = std::move(best.charts);
     return PageLayout(std::move(best.layout));
@@ -144,15 +146,23 @@ class PageFiller {
     return lay_out_charts({charts, densities(charts)}, options, part(0, kLaidOut));
   }
 
-  // Spends more effort on a single page, if it may then cover the share `wanted`.
-  Status work(Way& way, LayoutEffort options, double wanted) const {
-    options.wanted_fill = wanted;
-    const std::vector<Vec2d> wanted_densities = densities(way.charts);
-    Result<WorkedLayout> fuller = work_on_layout({way.charts, wanted_densities}, options,
-                                                 std::move(way.layout), part(kLaidOut, 1));
-    if (!fuller.ok()) return fuller.status();
-    way.layout = std::move(*fuller);
-    return {};
+  // Lays out pieces with as much work as the whole charts, which so many are.
+  Status lay_out_fully(Way& way, std::size_t whole, double wanted) const {
+    LayoutEffort effort = with_work_of(whole, 1, way);
+    effort.wanted_fill = wanted;
+    Result<WorkedLayout> fuller = lay_out(way.charts, effort);
+    if (fuller.ok() && goal_.covered(*fuller) > goal_.covered(way.layout))
+      way.layout = std::move(*fuller);
+    way.worked = true;
+    return context_.cancelled() ? Status::cancelled() : Status();
+  }
+
+  // Returns options for work on this share of what is spent on the whole charts.
+  LayoutEffort with_work_of(std::size_t whole, double share, const Way& way) const {
+    LayoutEffort effort = unpressed_;
+    effort.first_round =
+        share * std::min(1.0, pack::round_work(whole) / pack::round_work(way.charts.charts.size()));
+    return effort;
   }
 
   // Presses the pages, if they may then cover the share `wanted`.
@@ -175,22 +185,12 @@ class PageFiller {
            (!options_.free_aspect || charts.charts.size() <= kMostChartsFree);
   }
 
-  // Estimates the factor by which more effort may fill the page of pieces, from the factor for the
-  // page of whole charts. With 60 triangles of one size, more effort won 1 % in 3.5 s, and took
-  // that long again for each way of cutting.
-  double most_won_by_pieces(const WorkedLayout& whole) const {
-    constexpr double kOnceMore = 2, kLeast = 1.01;
-    if (whole.won == 0) return unpressed_.most_won;
-    return std::clamp(1 + kOnceMore * (whole.won - 1), kLeast, unpressed_.most_won);
-  }
-
   // Cuts charts ever shorter until the pages are full enough. `best` becomes the last way that is
   // worth its seams.
   Status cut(const ChartSet& whole, Way& best) {
     const double area = whole.distortion.uv_area, root_area = std::sqrt(whole.surface_area);
     const double side = std::sqrt(area / double(options_.pages));
     double seams_before = whole.seam_length;
-    const double most_won = most_won_by_pieces(best.layout);
     int vain = 0;
     for (const double longest : kLongestSides) {
       ++parts_;
@@ -208,9 +208,8 @@ class PageFiller {
       // Charts of 10^6 : 1 come in thousands of pieces, whose gutters leave less than a hundredth
       // of the page. Laying them out for each way of cutting took 17 s.
       if (most_covered(way.charts, uvs_.density, options_) < wanted) continue;
-      LayoutEffort further = unpressed_;
+      LayoutEffort further = with_work_of(whole.charts.size(), kOfTrial, way);
       further.wanted_fill = wanted;
-      further.most_won = most_won;
       Result<WorkedLayout> layout = lay_out(way.charts, further);
       if (!layout.ok() && layout.status().code() != ErrorCode::no_solution) return layout.status();
       // The gutters around the pieces take more room than there is, and those around smaller pieces
@@ -218,9 +217,12 @@ class PageFiller {
       if (!layout.ok()) return {};
       way.layout = std::move(*layout);
       if (goal_.covered(way.layout) < kHopeless * goal_.covered(best.layout)) return {};
+      if (kMostWorked * goal_.covered(way.layout) >= wanted && vain < kMostVain) {
+        if (Status s = lay_out_fully(way, whole.charts.size(), wanted); !s.ok()) return s;
+      }
       if (Status s = improve(way, further, vain < kMostVain); !s.ok()) return s;
       if (goal_.covered(way.layout) < wanted) {
-        vain += way.pressed;
+        vain += way.pressed || way.worked;
         continue;
       }
       best = std::move(way);
@@ -229,20 +231,15 @@ class PageFiller {
     return {};
   }
 
-  // Lays pieces out better if that may make a single page full enough, or several pages as full as
-  // they are wanted. Several pages are only pressed if `may_press`.
+  // Presses several pages of pieces if that may make them as full as they are wanted.
   Status improve(Way& way, const LayoutEffort& further, bool may_press) const {
-    const double full = std::max(further.wanted_fill, goal_.full(way.layout));
-    if (!goal_.reached(way.layout)) {
-      if (Status s = work(way, further, full); !s.ok()) return s;
-    }
     if (!may_press) return {};
     LayoutEffort pressed = further;
     pressed.press_pages = true;
     return press(way, pressed, std::max(further.wanted_fill, kFilledFree));
   }
 
-  // Share of a part; more work, or pressing several pages, is the rest.
+  // Share of a part; pressing several pages is the rest.
   static constexpr double kLaidOut = 0.4;
 
   const PlainUvs& uvs_;

@@ -1,5 +1,5 @@
 // Internal: lays out pages for callers that compare several ways to cut charts, and spend effort
-// only on pages that may become full enough.
+// only on the one that they choose.
 #pragma once
 
 #include <cstdint>
@@ -13,11 +13,10 @@
 namespace atlas {
 
 struct LayoutEffort : LayoutOptions {
-  bool press_pages = true;  // as in FitOptions
-  double wanted_fill = 0;   // as in pack::FitSearchOptions
-  bool more_work = true;    // spend more effort on a poorly filled page; see work_on_layout()
+  bool press_pages = true;          // as in FitOptions
+  double wanted_fill = 0;           // as in pack::FitSearchOptions
+  double first_round = 1;           // as in pack::FitSearchOptions
   std::uint32_t max_packings = 25;  // as in FitOptions
-  double most_won = 1.1;  // by which factor more effort may make a poorly filled page fuller
 };
 
 struct WorkedLayout : PageLayout {
@@ -25,9 +24,6 @@ struct WorkedLayout : PageLayout {
   // no chart could lie in them, divided by the area of the charts alone. It is 1 if outlines were
   // not tried.
   double with_lost_room = 1;
-  std::uint64_t layouts = 0;  // how many layouts of outlines were tried
-  // The factor by which more effort made a poorly filled page fuller; 0 if none was spent.
-  double won = 0;
 };
 
 // The charts to place, and their densities.
@@ -45,11 +41,5 @@ Result<WorkedLayout> lay_out_charts(const WantedCharts& wanted, const LayoutEffo
 // not searched for again. Errors: those of lay_out_charts().
 Result<WorkedLayout> press_layout(const WantedCharts& wanted, const LayoutEffort& options,
                                   const WorkedLayout& unpressed, const Context& context);
-
-// Packs a poorly filled page again with more effort, if it may then be filled to wanted_fill.
-// `standard` is what lay_out_charts() returned without more_work for the same charts and options.
-// This is not checked. Returns the better layout of the two. Errors: cancelled.
-Result<WorkedLayout> work_on_layout(const WantedCharts& wanted, const LayoutEffort& options,
-                                    WorkedLayout standard, const Context& context);
 
 }  // namespace atlas

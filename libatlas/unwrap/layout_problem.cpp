@@ -10,11 +10,8 @@
 namespace atlas {
 namespace {
 
-// Limits of what PackPreset::best tries: the number of layouts in proportion to that of charts,
-// since few charts have few orders, and the number of charts in all of them together. Nineteen
-// poorly filled sets of charts filled 0.503 of their pages with 36 000 charts, and 0.505 with 50
-// 000, in a third more time.
-constexpr std::uint64_t kLayoutsAChart = 50, kBestCharts = 56000;
+// What PackPreset::best may do, in rounds of `standard`.
+constexpr double kBestRounds = 15;
 
 // Returns the density that the common scale leaves for a box's side. Sides stop shrinking at the
 // smallest length that is allowed.
@@ -97,10 +94,11 @@ LayoutProblem::LayoutProblem(const WantedCharts& wanted, const LayoutEffort& how
   static_cast<FitOptions&>(fit) = box_fit_options(options);
   // Effort is limited instead of time, because a limit on time would make the result depend on
   // how busy the machine is.
-  const std::uint64_t n = std::max<std::size_t>(1, items.size());
-  fit.effort = std::max<std::uint64_t>(1, std::min(kLayoutsAChart * n, kBestCharts / n));
+  fit.effort =
+      std::uint64_t(std::ceil(kBestRounds * pack::round_work(items.size()) / pack::kWordsOfEffort));
   fit.free_aspect = options.free_aspect;
   fit.wanted_fill = options.wanted_fill;
+  fit.first_round = options.first_round;
   fit.press_pages = options.press_pages;
   fit.max_packings = options.max_packings;
   if (options.outlines) {
@@ -141,7 +139,6 @@ WorkedLayout layout_of(FitResult fitted, const LayoutProblem& problem) {
             : Vec2d{scaled_density(wanted.x, item.width, layout.scale, options.minimum_side),
                     scaled_density(wanted.y, item.height, layout.scale, options.minimum_side)};
   }
-  layout.layouts = fitted.layouts;
   layout.uv_utilization = uv_utilization(problem.charts, layout);
   const double texels = full_texels(problem.charts, problem.texels_per_unit);
   if (texels > 0) layout.with_lost_room = 1 + fitted.lost_area / texels;

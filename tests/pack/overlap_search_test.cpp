@@ -211,6 +211,10 @@ TEST(OverlapSearch, EndsWhenTheStripIsLowEnoughOrTheSearchIsCancelled) {
   EXPECT_EQ(search_some(4, options, cancelled).work, 0u);
 }
 
+bool apart_by(const Extent& page, std::vector<PlacedMask>& masks, double work = 1e9) {
+  return nudge_apart(page, masks, work);
+}
+
 // The masks of a sound layout are moved by up to two cells, as rounding does.
 TEST(Nudge, MovesMasksApart) {
   int apart = 0;
@@ -225,7 +229,7 @@ TEST(Nudge, MovesMasksApart) {
       m.at.y += noise.in(-2, 2);
     }
     const Extent page{options.width + 2, s.before.used_height + 2};
-    const bool done = nudge_apart(page, masks);
+    const bool done = apart_by(page, masks);
     apart += done;
     EXPECT_EQ(lie_apart(masks, page.width, page.height), done) << seed;
   }
@@ -238,11 +242,13 @@ TEST(Nudge, SaysWhenThereIsNoRoom) {
   const Mask& mask = pieces[0].masks[0];
   std::vector<PlacedMask> masks{{&mask, {0, 0}}, {&mask, {mask.width, 0}}};
   const Extent page{2 * mask.width - 1, 2 * mask.height - 1};
-  EXPECT_FALSE(nudge_apart(page, masks));
+  EXPECT_FALSE(apart_by(page, masks));
+  masks = {{&mask, {0, 0}}, {&mask, {mask.width - 1, 0}}};
+  EXPECT_FALSE(apart_by({2 * mask.width, mask.height}, masks, 0));  // no work is left
   masks = {{&mask, {0, 0}}, {&mask, {mask.width, 0}}};
-  EXPECT_TRUE(nudge_apart({2 * mask.width, mask.height}, masks));
+  EXPECT_TRUE(apart_by({2 * mask.width, mask.height}, masks));
   std::vector<PlacedMask> none;
-  EXPECT_TRUE(nudge_apart({1, 1}, none));
+  EXPECT_TRUE(apart_by({1, 1}, none));
 }
 
 }  // namespace

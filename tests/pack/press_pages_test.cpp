@@ -168,8 +168,8 @@ TEST(PressPages, IsCancelled) {
   EXPECT_EQ(fit_pages(charts.items, o, context).status().code(), ErrorCode::cancelled);
 }
 
-// If the pressed pages are emptier than those of the fit by more than further draws gain, only the
-// first draw of each page is tried.
+// If the pressed pages are emptier than those of the fit by more than exchanges gain, each is
+// pressed once only.
 TEST(PressPages, WhatCannotWinIsGivenUp) {
   const test::ChartItems charts = blobs(12, 40, 70, 4);
   const pack::FitSearchOptions o = several(charts, 2);
@@ -183,10 +183,8 @@ TEST(PressPages, WhatCannotWinIsGivenUp) {
   fuller.scale *= 1.2;
   EXPECT_TRUE(pack::press_pages(full, {charts.items, outlines}, o, {}).has_value());
   EXPECT_FALSE(pack::press_pages(fuller, {charts.items, outlines}, o, {}).has_value());
-  constexpr std::uint64_t kADraw = 20 * 32;  // layouts per draw
   EXPECT_GT(fuller.layouts, 0u);
-  EXPECT_LE(fuller.layouts, 2 * kADraw);
-  EXPECT_GT(full.layouts, 2 * kADraw);
+  EXPECT_GE(full.layouts, fuller.layouts);
 }
 
 }  // namespace

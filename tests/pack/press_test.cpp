@@ -233,48 +233,6 @@ TEST(Press, FewChartsOnOnePage) {
   test::expect_same(*pressed, *again);
 }
 
-// Stars leave much of any page empty. Such a page is drawn again, unless that cannot reach the
-// wanted fill.
-TEST(Press, WhatIsFarFromTheFillWantedIsNotDrawnAgain) {
-  std::vector<std::vector<Vec2d>> stars(20);
-  std::vector<ChartOutline> outlines;
-  double area = 0;
-  for (std::size_t k = 0; k < stars.size(); ++k) {
-    const auto corner = [&](int i) {
-      const double angle = i * std::numbers::pi / 5, r = (30 + 2 * double(k)) * (i % 2 ? 1 : 0.15);
-      return Vec2d{r * std::cos(angle), r * std::sin(angle)};
-    };
-    for (int i = 0; i < 10; ++i)
-      stars[k].insert(stars[k].end(), {{0, 0}, corner(i), corner(i + 1)});
-    outlines.push_back(outline_of({stars[k], {}}));
-    area += outlines.back().area;
-  }
-  const test::ChartItems charts(std::move(stars));
-  FitSearchOptions o = options_for(charts, 512);
-  const auto fill = [&](const PressedPage& page) {
-    return page.scale * page.scale * area / double(page.page.area());
-  };
-  const PressedPage usual = press_outlines(outlines, o, {});
-  ASSERT_GT(usual.scale, 0);
-  ASSERT_LT(fill(usual), 0.6);
-  o.wanted_fill = fill(usual);
-  EXPECT_EQ(press_outlines(outlines, o, {}).layouts, usual.layouts);
-  o.wanted_fill = 0.9;
-  const PressedPage hasty = press_outlines(outlines, o, {});
-  EXPECT_LT(hasty.layouts, usual.layouts);
-  EXPECT_GT(hasty.scale, 0);
-  EXPECT_LE(fill(hasty), fill(usual));
-  // Drawing one by one gives the same page.
-  o.wanted_fill = 0;
-  PressedPage page;
-  do {
-    draw_again(outlines, o, {}, page);
-  } while (worth_another_draw(page.draws, fill(page), 0));
-  EXPECT_EQ(page.draws, 3);
-  EXPECT_EQ(page.layouts, usual.layouts);
-  EXPECT_EQ(page.scale, usual.scale);
-}
-
 // Thin zigzags that reach into each other, turned by multiples of half a radian.
 test::ChartItems zigzags(int count, int teeth, double height, double width) {
   std::vector<std::vector<Vec2d>> shapes;
@@ -294,15 +252,6 @@ test::ChartItems zigzags(int count, int teeth, double height, double width) {
   return test::ChartItems(std::move(shapes));
 }
 
-// Three draws of such charts took 22 seconds in vain.
-TEST(Press, ChartsThatCannotBeSettledAreDrawnOnce) {
-  const test::ChartItems charts = zigzags(10, 4, 6, 0.8);
-  const PressedPage page =
-      press_outlines(outlines_of(charts.shapes, {}), options_for(charts, 256), {});
-  EXPECT_EQ(page.scale, 0);
-  EXPECT_EQ(page.draws, 1u);
-}
-
 // Where pressing fills little of a page, the search over cells may fill half as much again.
 TEST(Press, PagesThatStayEmptyAreAlsoFilledByCells) {
   const test::ChartItems charts = zigzags(12, 3, 4, 0.5);
@@ -318,36 +267,6 @@ TEST(Press, PagesThatStayEmptyAreAlsoFilledByCells) {
   ASSERT_TRUE(fit.ok() && cells.ok());
   EXPECT_GT(cells->scale, 1.05 * pressed.scale);
   EXPECT_EQ(fit->scale, cells->scale);
-}
-
-// `best` continues after the draws of `standard`: told how many layouts were tried, it begins with
-// draws that `standard` cannot have made, of more layouts each.
-TEST(Press, BestGoesOnAfterStandard) {
-  test::Noise noise{31};
-  std::vector<std::vector<Vec2d>> blobs;
-  for (int k = 0; k < 10; ++k) blobs.push_back(test::blob(noise, 30 + 40 * noise.unit(), 6));
-  const test::ChartItems charts(std::move(blobs));
-  FitSearchOptions o = options_for(charts, 512);
-  const std::vector<ChartOutline> outlines = outlines_of(charts.shapes, {});
-  PressedPage standard;
-  for (int draw = 0; draw < 3; ++draw) draw_again(outlines, o, {}, standard);
-  o.preset = PackPreset::best;
-  o.effort = standard.layouts + 1;  // enough for one more round
-  o.tried = standard.layouts;
-  const PressedPage rest = press_outlines(outlines, o, {});
-  EXPECT_EQ(rest.draws, 4u);
-  EXPECT_GT(rest.layouts - standard.layouts, standard.layouts / 3);
-  EXPECT_GT(rest.scale, 0);
-}
-
-// Of 139 measured pages seven gained more than these factors (1.045 after the first draw, 1.025
-// after the second) by further draws.
-TEST(Press, PagesThatDrawsWouldHardlyBringToWhatIsWantedAreNotDrawnAgain) {
-  EXPECT_TRUE(worth_another_draw(1, 0.64, 0));
-  EXPECT_TRUE(worth_another_draw(1, 0.64, 0.66));
-  EXPECT_FALSE(worth_another_draw(1, 0.64, 0.674));
-  EXPECT_TRUE(worth_another_draw(2, 0.64, 0.65));
-  EXPECT_FALSE(worth_another_draw(2, 0.64, 0.66));
 }
 
 // A chart that is longer than the side of a square page for all charts lies along a long page.

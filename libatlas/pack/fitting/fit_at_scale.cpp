@@ -47,7 +47,6 @@ class PageSearch {
     FitSearchOptions freely = options_;
     constexpr double kUnbound = 4;  // a scale that the page does not reach
     freely.max_scale = kUnbound * most_;
-    freely.tried = 0;  // those were layouts of another page
     std::int32_t side = side_for(kExpected), too_small = 0;
     std::optional<FitResult> best;
     double margin = kMargin;
@@ -103,7 +102,6 @@ class PageSearch {
   std::optional<FitResult> laid_at_most(std::int32_t side) const {
     FitSearchOptions on_page = options_;
     on_page.page_size = side;
-    on_page.tried = 0;
     on_page.free_aspect = false;  // which may choose a smaller scale
     Context unreported = context_;
     unreported.progress = {};
@@ -142,6 +140,27 @@ class PageSearch {
   double texels_ = 0, longest_ = 0;
 };
 
+// Searches for the fullest smaller page; with an effort several times: with one round of work,
+// three, seven and so on, as many as there is effort for. With more work, other pages are tried,
+// and the fullest need not be among them.
+std::optional<FitResult> search_pages(const FitCharts& charts, const FitSearchOptions& options,
+                                      const Context& context) {
+  if (options.preset != PackPreset::best || options.effort == 0)
+    return PageSearch(charts, options, context).run();
+  const double round = options.first_round * round_work(charts.items.size()) / kWordsOfEffort;
+  FitSearchOptions some = options;
+  some.preset = PackPreset::standard;
+  std::optional<FitResult> best = PageSearch(charts, some, context).run();
+  some.preset = PackPreset::best;
+  for (double rounds = 3; !context.cancelled() && rounds * round <= double(options.effort);
+       rounds = 2 * rounds + 1) {
+    some.effort = std::uint64_t(std::ceil(rounds * round));
+    std::optional<FitResult> next = PageSearch(charts, some, context).run();
+    if (next && (!best || next->utilization > best->utilization)) best = std::move(next);
+  }
+  return best;
+}
+
 }  // namespace
 
 Result<FitResult> fit_outlines_at_most(const FitCharts& charts, const FitSearchOptions& options,
@@ -149,9 +168,8 @@ Result<FitResult> fit_outlines_at_most(const FitCharts& charts, const FitSearchO
   if (options.free_aspect && options.pages == 1 && charts.items.size() > 1) {
     constexpr double kSearch = 0.9;  // share of the progress
     const Context searching = part_of_stage(context, "packing", 0, kSearch);
-    PageSearch search(charts, options, searching);
-    if (search.may_shrink()) {
-      std::optional<FitResult> found = search.run();
+    if (PageSearch(charts, options, searching).may_shrink()) {
+      std::optional<FitResult> found = search_pages(charts, options, searching);
       if (context.cancelled()) return Status::cancelled();
       if (found) return std::move(*found);
       return fit_outlines(charts, options, part_of_stage(context, "packing", kSearch, 1));

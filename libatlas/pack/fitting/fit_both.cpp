@@ -121,6 +121,9 @@ Result<FitResult> search_boxes_or_outlines(std::span<const FitItem> items,
   if (options.shapes.size() != items.size() || items.empty())
     return search_fit(items, options, context);
   if (Status s = check_shapes(options.shapes); !s.ok()) return s;
+  FitSearchOptions by_outlines = options;  // whose time begins now
+  if (options.preset == PackPreset::best && options.effort == 0)
+    by_outlines.deadline = std::min(options.deadline, wall_seconds() + options.time_budget);
   constexpr double kBoxes = 1.0 / 3;  // share of the progress
   Result<FitResult> boxed =
       search_fit(items, by_boxes, part_of_stage(context, "packing", 0, kBoxes));
@@ -130,7 +133,8 @@ Result<FitResult> search_boxes_or_outlines(std::span<const FitItem> items,
     comparison.complete(*boxed);
     if (!comparison.may_beat(*boxed)) return boxed;
   }
-  Result<FitResult> best = search_fit(items, options, part_of_stage(context, "packing", kBoxes, 1));
+  Result<FitResult> best =
+      search_fit(items, by_outlines, part_of_stage(context, "packing", kBoxes, 1));
   if (!best.ok()) return boxed.ok() && !context.cancelled() ? std::move(boxed) : std::move(best);
   comparison.complete_outlined(*best);
   if (!boxed.ok() || comparison.better(*best, *boxed)) return best;

@@ -49,7 +49,7 @@ struct PagePlace {
 
 class ManyCharts {
  public:
-  ManyCharts(const FitCharts& charts, const FitOptions& options, const Context& context)
+  ManyCharts(const FitCharts& charts, const FitSearchOptions& options, const Context& context)
       : charts_(charts), options_(options), context_(context) {
     for (const ChartOutline& o : charts.outlines) area_ += o.area;
     const bool any_angle = options.allow_rotation && options.any_angle;
@@ -80,7 +80,7 @@ class ManyCharts {
     for (const Way& way : ways_) {
       improve(way, {guess, most}, best, result);
       if (context_.cancelled()) return std::nullopt;
-      if (!options_.free_aspect && best.scale >= most) break;
+      if (over() || (!options_.free_aspect && best.scale >= most)) break;
     }
     if (best.scale == 0) return std::nullopt;
     write(std::move(best), result);
@@ -120,6 +120,8 @@ class ManyCharts {
       if (!options_.free_aspect && (scale >= high || scale <= low)) scale = (low + high) / 2;
     }
   }
+
+  bool over() const { return context_.cancelled() || wall_seconds() >= options_.deadline; }
 
   PieceOptions piece_options(std::span<const double> factors) const {
     PieceOptions options;
@@ -198,7 +200,8 @@ class ManyCharts {
     for (Piece& p : lone_pieces(way, factors, lone)) pieces.push_back(std::move(p));
     if (context_.cancelled()) return layout;
     const std::vector<PagePlace> places = fill_pages(pieces, layout);
-    if (context_.cancelled() || layout.height == 0) return layout;
+    if (over()) layout.height = 0;  // pages may not have been filled
+    if (layout.height == 0) return layout;
     const double cell = grid_.cell;
     layout.fill = scale * scale * area_ / (cell * cell * side_ * layout.height * options_.pages);
     layout.placements.resize(factors.size());
@@ -240,7 +243,8 @@ class ManyCharts {
         BitPage page(side_, kHighest * side_, longest);
         Nest nest;
         plans[p].direction = all.direction;
-        plans[p].cancel = context_.cancel;
+        plans[p].context = &context_;
+        plans[p].deadline = options_.deadline;
         plans[p].all_or_none = true;
         place_pieces(pieces, plans[p], page, nest);
         heights[p] = nest.left_over.empty() ? std::max(1, nest.used_height) : 0;
@@ -290,7 +294,7 @@ class ManyCharts {
   }
 
   const FitCharts charts_;
-  const FitOptions& options_;
+  const FitSearchOptions& options_;
   const Context& context_;
   std::vector<Way> ways_;
   GridChoice grid_;
@@ -301,7 +305,7 @@ class ManyCharts {
 
 }  // namespace
 
-std::optional<FitResult> fit_many(const FitCharts& charts, const FitOptions& options,
+std::optional<FitResult> fit_many(const FitCharts& charts, const FitSearchOptions& options,
                                   const Context& context) {
   return ManyCharts(charts, options, context).run();
 }

@@ -18,7 +18,7 @@ inline constexpr std::size_t kManyOnPage = 1000, kSomeOnPage = 129;
 // the pages, so a few layouts suffice. Where all charts fit at the largest scale, the pages are
 // made neither smaller nor fewer. Returns nothing if some chart finds no room, or if the context is
 // cancelled.
-std::optional<FitResult> fit_many(const FitCharts& charts, const FitOptions& options,
+std::optional<FitResult> fit_many(const FitCharts& charts, const FitSearchOptions& options,
                                   const Context& context);
 
 }  // namespace atlas::pack

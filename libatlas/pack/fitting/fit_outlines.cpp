@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <optional>
 
@@ -8,9 +9,9 @@
 #include "libatlas/pack/fitting/fit_pages.h"
 #include "libatlas/pack/fitting/fit_result.h"
 #include "libatlas/pack/fitting/outline_fit.h"
+#include "libatlas/pack/nesting/overlap_search.h"
 #include "libatlas/pack/outlines/shape_check.h"
 #include "libatlas/pack/pressing/specks.h"
-#include "libatlas/pack/pressing/straight_page.h"
 
 namespace atlas::pack {
 namespace {
@@ -19,7 +20,7 @@ namespace {
 // takes few packings, and each scale was seen to fit or not. The first guess is the scale at which
 // shapes fill 74 % of the pages, or slightly more than the scale that `best` already has.
 bool search_scale(OutlineFit& fit, FitResult& result, OutlineLayout& best) {
-  const FitOptions& options = fit.options();
+  const FitSearchOptions& options = fit.options();
   const Context& context = fit.context();
   const auto attempt = [&](double scale) {
     OutlineLayout layout;
@@ -47,7 +48,8 @@ bool search_scale(OutlineFit& fit, FitResult& result, OutlineLayout& best) {
   std::uint32_t failures = 0;
   // The packings of an earlier search that found no scale.
   const std::uint32_t in_vain = low > 0 ? 0 : result.packings;
-  while (result.packings + 1 < options.max_packings + in_vain && !context.cancelled()) {
+  const auto over = [&] { return context.cancelled() || wall_seconds() >= options.deadline; };
+  while (result.packings + 1 < options.max_packings + in_vain && !over()) {
     const bool ok = attempt(scale);
     if (ok && scale >= most) return true;
     (ok ? low : high) = scale;
@@ -66,7 +68,7 @@ bool search_scale(OutlineFit& fit, FitResult& result, OutlineLayout& best) {
       scale = high > most ? std::min(most, low * kLittleMore) : (low + high) / 2;
     }
   }
-  return low > 0 || attempt(least);
+  return low > 0 || (!over() && attempt(least));
 }
 
 // Returns the area in cells of the smallest rectangle, of any shape, that holds the layout's one
@@ -201,7 +203,28 @@ OutlineFit* search_directions(OutlineFit& quarters, OutlineFit& all, FitResult& 
   return &all;
 }
 
-constexpr std::size_t kFewInRows = 64;  // charts
+// Makes a page of any shape lower than any order of placing charts does, by letting charts overlap
+// for a while.
+void lower_page(const OutlineFit& fit, double share, OutlineLayout& best) {
+  // Pages of 129 to 500 charts became fuller by 0.3 points in 0.1 to 0.3 s, which only long rounds
+  // are for. With more charts, all their pairs take even longer.
+  constexpr std::size_t kFew = 128, kMost = 500;
+  if (best.pieces.size() > (share > 1 ? kMost : kFew)) return;
+  OverlapSearchOptions overlap;
+  Nest nest;
+  nest.places = best.places;
+  for (std::size_t i = 0; i < best.pieces.size(); ++i) {
+    if (!best.places[i].placed) continue;
+    const Mask& mask = best.pieces[i].masks[best.places[i].direction];
+    overlap.width = std::max(overlap.width, best.places[i].at.x + mask.width);
+    nest.used_height = std::max(nest.used_height, best.places[i].at.y + mask.height);
+  }
+  overlap.work = std::uint64_t(share * round_work(best.pieces.size()));
+  overlap.seed = fit.options().seed;
+  overlap.deadline = fit.options().deadline;
+  search_overlaps(best.pieces, overlap, fit.context(), nest);
+  best.places = std::move(nest.places);
+}
 
 // Returns whether a page that the search over cells has filled to this share is pressed in a second
 // try. With specks, which the search lays into the gaps as well, pressing gains little unless the
@@ -220,88 +243,137 @@ bool worth_searching_late(double fill, const FitSearchOptions& options) {
   return fill < kVeryPoorFill && kMostByCells * fill >= options.wanted_fill;
 }
 
+// Takes `next` if it is better than `best`, or adds its layouts to those of `best`.
+void take_better(std::optional<FitResult> next, const FitOptions& options,
+                 std::optional<FitResult>& best) {
+  if (!next) return;
+  const bool better = !best || (options.free_aspect ? next->utilization > best->utilization
+                                                    : next->scale > best->scale);
+  const std::uint64_t layouts = next->layouts + (best ? best->layouts : 0);
+  if (better) best = std::move(next);
+  best->layouts = layouts;
+}
+
+// Searches for the largest scale at which charts fit on cells, with this share of round_work(). On
+// pages of given shape, it looks for scales above `known` only. Returns nothing if there is none.
+std::optional<FitResult> fit_on_cells(const FitCharts& charts, const FitSearchOptions& options,
+                                      double known, const Context& context) {
+  const auto [items, outlines] = charts;
+  FitSearchOptions by_quarters = options;
+  by_quarters.rotations = std::min(options.rotations, 4u);
+  OutlineFit quarters(items, outlines, by_quarters, context);
+  OutlineFit all(items, outlines, options, context);
+  FitResult result;
+  OutlineLayout best;
+  best.scale = known;
+  OutlineFit* fit = search_directions(quarters, all, result, best);
+  if (!fit) return std::nullopt;
+  if (options.pages == 1 && items.size() < kManyItems) place_by_boxes(*fit, result, best);
+  if (context.cancelled() || best.pieces.empty()) return std::nullopt;
+  if (options.free_aspect && options.pages == 1 && items.size() > 1) {
+    fill_free_page(*fit, result, best);
+    if (options.preset != PackPreset::fast) lower_page(*fit, options.first_round, best);
+  }
+  if (best.scale == options.max_scale) use_fewer_pages(*fit, options, result, best);
+  write_result(*fit, options, best, result);
+  return result;
+}
+
 // Presses the charts if they are few, else searches for the largest scale at which they fit. On
 // pages of given shape, it looks for scales above `known` only, and returns nothing if there is
 // none.
 Result<std::optional<FitResult>> search_outlines(const FitCharts& charts,
                                                  const FitSearchOptions& options, double known,
                                                  const Context& context) {
-  const auto [items, outlines] = charts;
-  FitResult result;
-  const bool specks = has_specks(outlines, options);
-  std::optional<FitResult> pressed;
-  if (!specks) pressed = fit_pressed(charts, options, context);
-  // Straight charts are laid in rows on a page of any shape, or pressed by `best` on a page of
-  // given shape. The search over cells may fill more. With many charts, rows are about as good, and
-  // far cheaper.
-  const bool many = options.free_aspect && items.size() > kFewInRows;
+  const bool specks = has_specks(charts.outlines, options);
+  std::optional<FitResult> best;
+  if (!specks) best = fit_pressed(charts, options, context);
   if (context.cancelled()) return Status::cancelled();
-  const bool by_both =
-      pressed && options.tried == 0 &&
-      ((!many && is_straight(outlines)) || worth_searching_late(pressed->utilization, options));
-  if (pressed && !by_both) return pressed;
-  FitOptions by_cells = options;
-  if (pressed) by_cells.preset = PackPreset::standard;
-  FitOptions by_quarters = by_cells;
-  by_quarters.rotations = std::min(by_cells.rotations, 4u);
-  OutlineFit quarters(items, outlines, by_quarters, context);
-  OutlineFit all(items, outlines, by_cells, context);
-  OutlineLayout best;
-  best.scale = known;
-  OutlineFit* fit = search_directions(quarters, all, result, best);
-  const bool found = fit != nullptr;
-  if (found && options.pages == 1 && items.size() < kManyItems) place_by_boxes(*fit, result, best);
-  if (context.cancelled()) return Status::cancelled();
-  if (pressed && (!found || (!options.free_aspect && best.scale <= pressed->scale))) return pressed;
-  if (!found) return no_room(items.size(), options);
-  if (best.pieces.empty()) return std::optional<FitResult>{};
-  if (options.free_aspect && options.pages == 1 && items.size() > 1)
-    fill_free_page(*fit, result, best);
-  if (best.scale == options.max_scale) use_fewer_pages(*fit, options, result, best);
-  write_result(*fit, options, best, result);
-  if (specks && worth_pressing_late(result.utilization, options))
-    pressed = fit_pressed(charts, options, context);
-  if (context.cancelled()) return Status::cancelled();
-  if (pressed && (options.free_aspect ? pressed->utilization >= result.utilization
-                                      : pressed->scale > result.scale)) {
-    pressed->layouts += result.layouts;
-    return pressed;
+  // Whether `best` also searches over cells, and how long, must not hang on what pressing has
+  // found, which hangs on the effort.
+  const bool both = options.preset == PackPreset::best ||
+                    (best && worth_searching_late(best->utilization, options));
+  if (best && !both) return best;
+  const bool pressed = !specks && may_be_pressed(charts.outlines, options);
+  FitSearchOptions by_cells = options;
+  SearchRounds rounds(options, charts.items.size());
+  while (rounds.next()) {
+    by_cells.first_round = rounds.share();
+    const bool above = best && !pressed && !options.free_aspect;
+    take_better(fit_on_cells(charts, by_cells, above ? best->scale : known, context), options,
+                best);
+    if (context.cancelled()) return Status::cancelled();
+    if (pressed || !best || best->scale >= options.max_scale) break;
   }
-  std::optional<FitResult> denser = press_pages(result, charts, options, context);
+  if (!best) {
+    if (known > 0) return best;
+    return no_room(charts.items.size(), options);
+  }
+  if (specks &&
+      (options.preset == PackPreset::best || worth_pressing_late(best->utilization, options)))
+    take_better(fit_pressed(charts, options, context), options, best);
+  if (!pressed) {
+    std::optional<FitResult> denser = press_pages(*best, charts, options, context);
+    if (denser) best = std::move(denser);
+  }
   if (context.cancelled()) return Status::cancelled();
-  if (denser) return denser;
-  return std::optional(std::move(result));
+  return best;
+}
+
+Result<FitResult> fit_within_time(const FitCharts& charts, const FitSearchOptions& options,
+                                  const Context& context) {
+  const std::size_t n = charts.items.size();
+  std::optional<FitResult> best;
+  double begun = 0;  // share of the progress
+  if (n >= kSomeOnPage * options.pages) {
+    begun = 0.3;
+    const Context many = part_of_stage(context, "packing", 0, begun);
+    FitSearchOptions standard = options;
+    standard.preset = std::min(options.preset, PackPreset::standard);
+    best = fit_many(charts, standard, many);
+    if (options.preset == PackPreset::best)
+      take_better(fit_many(charts, options, many), options, best);
+    if (context.cancelled()) return Status::cancelled();
+    // Where all charts are as large as they may be, the pages can be smaller or fewer.
+    const bool reducible = options.power_of_two || options.pages > 1;
+    if (best && reducible && best->scale >= options.max_scale) best.reset();
+    if (best && options.free_aspect && n >= kManyOnPage) return std::move(*best);
+  }
+  const bool many = best && n >= kManyOnPage * options.pages;
+  const double known = many && !options.free_aspect ? best->scale : 0;
+  Result<std::optional<FitResult>> searched =
+      search_outlines(charts, options, known, part_of_stage(context, "packing", begun, 1));
+  if (context.cancelled()) return Status::cancelled();
+  if (searched.ok()) take_better(std::move(*searched), options, best);
+  if (!best) return searched.status();
+  return std::move(*best);
 }
 
 }  // namespace
 
 Result<FitResult> fit_outlines(const FitCharts& charts, const FitSearchOptions& options,
                                const Context& context) {
-  const std::size_t n = charts.items.size();
-  std::optional<FitResult> quick;
-  double begun = 0;  // share of the progress
-  if (n >= kSomeOnPage * options.pages) {
-    begun = 0.3;
-    quick = fit_many(charts, options, part_of_stage(context, "packing", 0, begun));
-    if (context.cancelled()) return Status::cancelled();
-    // Where all charts are as large as they may be, the pages can be smaller or fewer.
-    const bool reducible = options.power_of_two || options.pages > 1;
-    if (quick && reducible && quick->scale >= options.max_scale) quick.reset();
-    if (quick && options.free_aspect && n >= kManyOnPage) return std::move(*quick);
+  constexpr double kNever = std::numeric_limits<double>::infinity();
+  if (options.deadline == kNever) return fit_within_time(charts, options, context);
+  // What `fast` finds is there when the time is up, however little it was.
+  FitSearchOptions fast = options;
+  fast.preset = PackPreset::fast;
+  fast.deadline = kNever;
+  Context unreported = context;
+  unreported.progress = {};
+  Result<FitResult> first = fit_within_time(charts, fast, unreported);
+  if (!first.ok()) {
+    FitSearchOptions unlimited = options;
+    unlimited.preset = PackPreset::standard;
+    unlimited.deadline = kNever;
+    return fit_within_time(charts, unlimited, context);
   }
-  const bool many = quick && n >= kManyOnPage * options.pages;
-  const double known = many && !options.free_aspect ? quick->scale : 0;
-  Result<std::optional<FitResult>> searched =
-      search_outlines(charts, options, known, part_of_stage(context, "packing", begun, 1));
-  if (!searched.ok())
-    return quick && !context.cancelled() ? Result(std::move(*quick)) : searched.status();
-  std::optional<FitResult>& found = *searched;
-  const bool better =
-      found && (!quick || (options.free_aspect ? found->utilization >= quick->utilization
-                                               : found->scale > quick->scale));
-  if (!better) return std::move(*quick);
-  if (quick) found->layouts += quick->layouts;
-  return std::move(*found);
+  std::optional<FitResult> best = std::move(*first);
+  if (wall_seconds() >= options.deadline) return std::move(*best);
+  Result<FitResult> found = fit_within_time(charts, options, context);
+  if (context.cancelled()) return Status::cancelled();
+  if (found.ok()) take_better(std::move(*found), options, best);
+  return std::move(*best);
 }
 
 }  // namespace atlas::pack

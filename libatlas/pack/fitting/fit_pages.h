@@ -23,8 +23,11 @@ struct FitCharts {
 Result<FitResult> fit_outlines(const FitCharts& charts, const FitSearchOptions& options,
                                const Context& context);
 
+// Returns whether fit_pressed is worth a try.
+bool may_be_pressed(std::span<const ChartOutline> outlines, const FitSearchOptions& options);
+
 // Does the same for one page of few charts by pressing. Returns nothing if pressing is not worth a
-// try (worth_pressing), finds nothing, or does not give what was asked for: if all charts fit at
+// try, finds nothing, or does not give what was asked for: if all charts fit at
 // the largest scale and the page could be smaller, or if some charts reach their minimum sides.
 std::optional<FitResult> fit_pressed(const FitCharts& charts, const FitSearchOptions& options,
                                      const Context& context);

@@ -9,16 +9,21 @@
 
 namespace atlas::pack {
 
+bool may_be_pressed(std::span<const ChartOutline> outlines, const FitSearchOptions& options) {
+  if (!worth_pressing(outlines, options)) return false;
+  const bool straight = outlines.size() > 1 && is_straight(outlines);
+  if (!straight) return !are_slivers(outlines, options);
+  // On a page of given shape, the search over cells fills more with straight charts than pressing
+  // does.
+  return !has_specks(outlines, options) &&
+         (options.free_aspect || options.preset == PackPreset::best);
+}
+
 std::optional<FitResult> fit_pressed(const FitCharts& charts, const FitSearchOptions& options,
                                      const Context& context) {
   const auto [items, outlines] = charts;
-  if (!worth_pressing(outlines, options)) return std::nullopt;
+  if (!may_be_pressed(outlines, options)) return std::nullopt;
   const bool straight = outlines.size() > 1 && is_straight(outlines);
-  // On a page of given shape, the search over cells fills more with straight charts than pressing
-  // does.
-  if (straight && !options.free_aspect && options.preset != PackPreset::best) return std::nullopt;
-  if (straight && has_specks(outlines, options)) return std::nullopt;
-  if (!straight && are_slivers(outlines, options)) return std::nullopt;
   PressedPage pressed = straight && options.free_aspect
                             ? pack_straight(outlines, options, context)
                             : press_outlines(outlines, options, context);

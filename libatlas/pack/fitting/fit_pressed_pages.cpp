@@ -26,19 +26,10 @@ constexpr std::size_t kMostCharts = 64;
 // Maximum number of pages. Each takes about 0.4 s, which two hundred pages of a small mesh would
 // not be worth.
 constexpr std::size_t kMostPressedPages = 24;
-// Further draws and exchanges are expected to enlarge the scale by at most this factor. If the
-// balanced scale after the first draws, times this factor, is below the scale of the fit, the fit's
-// pages are kept. Pages of 135 triangles, at 0.96 to 0.97 of the fit's scale, were drawn three
-// times in vain for 15 s. 22 models on 2, 4 and 8 pages lose nothing by this rule.
-constexpr double kMostRedrawn = 1.02;
-// If the caller wants the pages fuller than the fit, they may grow by this factor in scale after
-// the first draws, and by kMostExchanged after all draws. Both are estimates: the first is what all
-// draws and exchanges gained for one model, 65 charts on four pages.
-constexpr double kMostGained = 1.035, kMostExchanged = 1.015;
-// A page that exchanges charts is drawn again if further draws may fill it to this share of what
-// the exchange needs. With a share of 1, sixty charts on four pages filled 0.543 instead of 0.569,
-// because further draws gain more than usual on pages that are this poorly filled.
-constexpr double kNearly = 0.9;
+// Exchanges are expected to enlarge the scale by at most this factor. If the balanced scale, times
+// this factor, is below the scale of the fit, or below that at which pages are as full as the
+// caller wants, the fit's pages are kept.
+constexpr double kMostExchanged = 1.02;
 // Minimum gain in scale, by an exchange or by all together.
 constexpr double kLeastGain = 1.002;
 // Minimum gain that must be expected before both pages are pressed.
@@ -55,8 +46,8 @@ class PagePress {
   }
 
   // Returns false if a page is not worth pressing, or if pressing it finds nothing. It also returns
-  // false if the first draws give a scale that is smaller than that of the fit, or than the wanted
-  // one, by more than further draws gain.
+  // false if the scale is smaller than that of the fit, or than the wanted one, by more than
+  // exchanges gain.
   bool start(const FitResult& fitted) {
     groups_.resize(fitted.pages.size());
     for (std::uint32_t i = 0; i < outlines_.size(); ++i) {
@@ -68,20 +59,14 @@ class PagePress {
         std::all_of(groups_.begin(), groups_.end(), [&](const Group& g) { return may_press(g); });
     if (!may) return false;
     for (Group& g : groups_) draw(g);
-    const double wanted = wanted_scale() > fitted.scale ? wanted_scale() : 0;
-    if (kMostRedrawn * balanced_scale() < fitted.scale || kMostGained * balanced_scale() < wanted)
-      return false;
-    draw_tightest();
-    if (!(common_scale() > 0)) return false;
-    if (wanted > 0) draw_others();
-    return !(kMostExchanged * balanced_scale() < wanted);
+    return common_scale() > 0 &&
+           !(kMostExchanged * balanced_scale() < std::max(fitted.scale, wanted_scale()));
   }
 
   // Exchanges charts between the tightest page and others, with at most this many attempts.
   void exchange(std::size_t attempts) {
-    for (; attempts > 0 && !context_.cancelled(); --attempts) {
-      std::optional<Exchange> chosen = best_exchange();
-      if (!chosen && draw_others()) chosen = best_exchange();
+    for (; attempts > 0 && !over(); --attempts) {
+      const std::optional<Exchange> chosen = best_exchange();
       if (!chosen) return;
       const auto& [from, to, out, in, gain] = *chosen;
       tried_.insert({from, to, out, in});
@@ -89,7 +74,6 @@ class PagePress {
       if (!changed) continue;
       groups_[from] = (*changed)[0];
       groups_[to] = (*changed)[1];
-      draw_tightest();
       std::erase_if(tried_, [&, a = from, b = to](const auto& t) {
         return std::get<0>(t) == a || std::get<1>(t) == a || std::get<0>(t) == b ||
                std::get<1>(t) == b;
@@ -188,51 +172,20 @@ class PagePress {
            !are_slivers(own, options_);
   }
 
-  // Makes one more draw of the group's page, which ends early if it is unlikely to reach this
-  // scale. Returns false if none is worthwhile, because the page is full or unlikely to reach the
-  // scale. Exchanges ask for the same charts again and again, so what was drawn for a set of charts
-  // is kept.
-  bool draw(Group& group, double scale = 0) {
-    PressedPage& page = drawn_[group.charts];
-    const double side = options_.page_size;
-    const double fill = page.scale * page.scale * group.area / (side * side);
-    const bool alone = group.charts.size() == 1;
-    const double wanted_fill = kNearly * scale * scale * group.area / (side * side);
-    const bool wanted =
-        page.draws == 0 || (!alone && worth_another_draw(page.draws, fill, wanted_fill));
-    if (wanted && !context_.cancelled()) {
-      FitSearchOptions one_page = options_;
-      one_page.wanted_fill = scale * scale * group.area / (side * side);
-      draw_again(outlines_of(group), one_page, context_, page);
-      group.page = page;
-      return true;
-    }
-    group.page = page;
-    return false;
+  // Presses the group's page. Exchanges ask for the same charts again and again, so what was found
+  // for a set of charts is kept.
+  void draw(Group& group) {
+    const auto [page, is_new] = drawn_.try_emplace(group.charts);
+    if (is_new && !over()) page->second = press_outlines(outlines_of(group), options_, context_);
+    group.page = page->second;
   }
 
-  // Draws the tightest page again, as long as that is worthwhile, until it is not the tightest any
-  // more, and so on. More draws of the other pages would not enlarge the common scale.
-  void draw_tightest() {
-    while (draw(groups_[tightest()])) {
-    }
-  }
+  bool over() const { return context_.cancelled() || wall_seconds() >= options_.deadline; }
 
-  // Draws all pages again as long as that is worthwhile. Looser pages have room for more exchanges.
-  // Returns whether any page was drawn.
-  bool draw_others() {
-    bool any = false;
-    for (Group& g : groups_) {
-      while (draw(g)) any = true;
-    }
-    return any;
-  }
-
-  // Draws the page until its scale exceeds `scale`. Returns false if it never does.
+  // Presses the page. Returns whether its scale exceeds `scale`.
   bool draw_beyond(double scale, Group& group) {
     if (!may_press(group)) return false;
-    while (draw(group, scale) && !(group.page.scale > scale)) {
-    }
+    draw(group);
     return group.page.scale > scale;
   }
 

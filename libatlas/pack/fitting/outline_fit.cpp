@@ -53,19 +53,20 @@ void give_back(std::vector<PagePieces>& groups, OutlineLayout& layout) {
       layout.pieces[group.ids[k]] = std::move(group.pieces[k]);
 }
 
-NestPlan in_order(std::span<const Piece> pieces, const Context& context) {
+NestPlan in_order(std::span<const Piece> pieces, double deadline, const Context& context) {
   NestPlan plan;
   plan.order.resize(pieces.size());
   std::iota(plan.order.begin(), plan.order.end(), 0u);
   plan.direction.assign(pieces.size(), kFree);
-  plan.cancel = context.cancel;
+  plan.context = &context;
+  plan.deadline = deadline;
   return plan;
 }
 
 }  // namespace
 
 OutlineFit::OutlineFit(std::span<const FitItem> items, std::span<const ChartOutline> outlines,
-                       const FitOptions& options, const Context& context)
+                       const FitSearchOptions& options, const Context& context)
     : items_(items), outlines_(outlines), options_(options), context_(context) {
   const std::uint32_t rotations =
       options.allow_rotation ? options.rotations : std::min(options.rotations, 1u);
@@ -85,6 +86,10 @@ double OutlineFit::share(double scale) const {
   OutlineLayout layout;
   prepare(scale, layout);
   return double(cells_of(layout.pieces)) / double(cells_of_pages(options_.pages));
+}
+
+bool OutlineFit::over() const {
+  return context_.cancelled() || wall_seconds() >= options_.deadline;
 }
 
 bool OutlineFit::pack_at(double scale, std::uint32_t pages, OutlineLayout& layout) {
@@ -111,7 +116,7 @@ void OutlineFit::shrink_pages(OutlineLayout& layout) const {
   parallel_for(context_, pages, 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t p = begin; p < end; ++p) {
       const PagePieces& group = groups[p];
-      NestPlan plan = in_order(group.pieces, context_);
+      NestPlan plan = in_order(group.pieces, options_.deadline, context_);
       plan.all_or_none = true;
       const std::int64_t cells = cells_of(group.pieces);
       for (const Extent& texels : sizes) {
@@ -120,7 +125,7 @@ void OutlineFit::shrink_pages(OutlineLayout& layout) const {
         BitPage open(size.width, size.height, longest_run(group.pieces));
         Nest nest;
         place_pieces(group.pieces, plan, open, nest);
-        if (!nest.left_over.empty() || context_.cancelled()) continue;
+        if (!nest.left_over.empty() || over()) continue;
         for (std::size_t k = 0; k < group.ids.size(); ++k)
           layout.places[group.ids[k]] = nest.places[k];
         layout.page_sizes[p] = size;
@@ -149,7 +154,7 @@ bool OutlineFit::pack_pages(std::uint32_t pages, OutlineLayout& layout) const {
     for (std::size_t p = begin; p < end; ++p) found[p] = fill_group(groups[p].pieces, p);
   });
   give_back(groups, layout);
-  if (context_.cancelled()) return false;  // pages may not have been filled
+  if (over()) return false;  // pages may not have been filled
   layout.places.assign(layout.pieces.size(), {});
   std::vector<std::uint32_t> left;
   for (std::uint32_t p = 0; p < pages; ++p) {
@@ -180,44 +185,26 @@ bool OutlineFit::group(std::uint32_t pages, OutlineLayout& layout) const {
 }
 
 NestSearchOptions OutlineFit::search_of(std::size_t page) const {
-  constexpr std::uint64_t kLayouts = 300, kBestLayouts = 3000, kWork = 16'000'000,
-                          kBestWork = 400'000'000;
   // About eight packings in a search for the scale fail, and these use up their limit.
-  constexpr std::uint64_t kPackings = 8, kWordsALayout = 25'000;
+  constexpr double kPackings = 8;
   NestSearchOptions search;
   search.width = search.enough = side_;
   search.seed = page + 1;
-  search.work = kWork;
-  if (options_.preset != PackPreset::best) {
-    search.layouts = kLayouts;
-  } else if (options_.pages > 1) {
-    // On tiny pages this many words are millions of layouts: 20 charts on four pages of 64 texels
-    // took 33 s, and no more than the first thousands of layouts gained anything.
-    search.layouts = kBestLayouts;
-    search.work = kBestWork;
-  } else if (options_.effort == 0) {
-    search.work = kBestWork;
-  } else {
-    // Without this limit, every packing that failed, which were a dozen in the search for the
-    // scale, tried 40 000 layouts of six charts. That took 12 s and gained 1.7 percentage points on
-    // a page of 64 texels.
-    const std::uint64_t share = options_.effort / kPackings;
-    search.layouts = std::max(kLayouts, share);
-    search.work = std::clamp(std::min(share, kBestWork) * kWordsALayout, kWork, kBestWork);
-  }
-  search.work /= options_.pages;
+  search.work = std::uint64_t(options_.first_round * round_work(items_.size()) /
+                              (kPackings * kWordsOfPlacing * options_.pages));
+  search.deadline = options_.deadline;
   return search;
 }
 
 NestSearchResult OutlineFit::fill_group(std::span<const Piece> pieces, std::size_t p) const {
   NestSearchResult filled;
   filled.layouts = 1;
-  NestPlan plan = in_order(pieces, context_);
+  NestPlan plan = in_order(pieces, options_.deadline, context_);
   // On a single page, charts that are left over have no room elsewhere either.
   plan.all_or_none = options_.pages == 1 && !searches_skip_rows(pieces.size());
   BitPage page(side_, side_, longest_run(pieces));
   place_pieces(pieces, plan, page, filled.nest);
-  if (context_.cancelled()) return filled;
+  if (over()) return filled;
   if (filled.nest.left_over.empty() || options_.preset == PackPreset::fast) return filled;
   if (plan.order.size() < 2) return filled;  // one chart has been tried in every direction
   // A search over orders is only worthwhile if it can try more than a few.

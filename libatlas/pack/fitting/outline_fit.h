@@ -11,6 +11,7 @@
 #include "libatlas/pack/nesting/grid_choice.h"
 #include "libatlas/pack/nesting/nest.h"
 #include "libatlas/pack/outlines/chart_outline.h"
+#include "libatlas/pack/pressing/fit_search_options.h"
 
 namespace atlas::pack {
 
@@ -30,13 +31,13 @@ struct OutlineLayout {
 class OutlineFit {
  public:
   OutlineFit(std::span<const FitItem> items, std::span<const ChartOutline> outlines,
-             const FitOptions& options, const Context& context);
+             const FitSearchOptions& options, const Context& context);
 
   double area() const { return area_; }
   const ChartOutline& outline(std::size_t chart) const { return outlines_[chart]; }
   const GridChoice& grid() const { return grid_; }
   std::int32_t side() const { return side_; }
-  const FitOptions& options() const { return options_; }
+  const FitSearchOptions& options() const { return options_; }
   const Context& context() const { return context_; }
 
   FitBounds bounds() const;
@@ -59,6 +60,9 @@ class OutlineFit {
   void shrink_pages(OutlineLayout& layout) const;
 
  private:
+  // Whether the search has been cancelled or its time is up. Pages are left unfinished then.
+  bool over() const;
+
   // Rasterises the pieces.
   void prepare(double scale, OutlineLayout& layout) const;
 
@@ -71,8 +75,7 @@ class OutlineFit {
   // Returns false if the pieces' cells alone exceed the pages.
   bool group(std::uint32_t pages, OutlineLayout& layout) const;
 
-  // Returns the limits of the search over orders for one page. A given effort is shared by the
-  // packings.
+  // Returns the limits of the search over orders for one page.
   NestSearchOptions search_of(std::size_t page) const;
 
   // Packs these charts, which come largest first, into page p.
@@ -84,7 +87,7 @@ class OutlineFit {
 
   std::span<const FitItem> items_;
   std::span<const ChartOutline> outlines_;
-  const FitOptions& options_;
+  const FitSearchOptions& options_;
   const Context& context_;
   GridChoice grid_;
   std::int32_t side_ = 0;

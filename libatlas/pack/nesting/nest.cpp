@@ -10,6 +10,7 @@
 #include <queue>
 #include <utility>
 
+#include "libatlas/core/clock.h"
 #include "libatlas/core/portable_math.h"
 
 namespace atlas::pack {
@@ -254,7 +255,7 @@ class Placer {
 void place_pieces(std::span<const Piece> pieces, const NestPlan& plan, BitPage& page, Nest& nest) {
   Placer placer(pieces, plan, page, nest);
   for (const std::uint32_t id : plan.order) {
-    if (plan.cancel && plan.cancel->load(std::memory_order_relaxed)) break;
+    if (plan.context && (plan.context->cancelled() || wall_seconds() >= plan.deadline)) break;
     if (placer.find(id) && !placer.put(id)) break;
     if (plan.all_or_none && !nest.left_over.empty()) break;
   }

@@ -1,7 +1,6 @@
 // Internal: places outlines on one page, and searches for a good order of placing them.
 #pragma once
 
-#include <atomic>
 #include <cstdint>
 #include <limits>
 #include <memory>
@@ -25,8 +24,10 @@ struct NestPlan {
   // Whether placing also ends with the first piece that finds no room. If pieces are long and thin,
   // a search in vain takes as long as hundreds of others.
   bool all_or_none = false;
-  // Once it is raised, place_pieces() places no more. The other pieces are not left over either.
-  const std::atomic<bool>* cancel = nullptr;
+  // Once it is cancelled or the deadline (wall_seconds()) has passed, place_pieces() places no
+  // more. The other pieces are not left over either.
+  const Context* context = nullptr;
+  double deadline = std::numeric_limits<double>::infinity();
 };
 
 // Sorts by size, largest first. The size is the number of cells, or a weighted geometric mean of
@@ -92,7 +93,7 @@ struct NestSearchOptions {
   std::uint64_t layouts = UINT64_MAX;  // maximum number of layouts that are tried
   std::int32_t enough = 0;             // the search stops when the strip is this low
   std::uint64_t seed = 1;
-  double seconds = 1e300;  // wall time, for `best`
+  double deadline = std::numeric_limits<double>::infinity();  // wall_seconds(), for `best`
 };
 struct NestSearchResult {
   Nest nest;                  // the lowest nest found

@@ -120,7 +120,6 @@ struct NestSearch::State {
     current_energy = best_energy = evaluate(next);
     std::swap(current, next);
     found.nest = current.nest;
-    begun = wall_seconds();
   }
 
   // Returns the share of its limits that the search has used up.
@@ -161,7 +160,7 @@ struct NestSearch::State {
   bool alone;
   PlacedPlan current, next;
   NestSearchResult found;
-  double current_energy = 0, best_energy = 0, begun = 0;
+  double current_energy = 0, best_energy = 0;
 };
 
 NestSearch::NestSearch(std::span<const Piece> pieces, const NestPlan& start,
@@ -175,7 +174,7 @@ const NestSearchResult& NestSearch::run(double share, const Context& context) {
   State& s = *state_;
   if (s.found.layouts == 0) s.begin();
   while (s.spent() < share && !s.pieces.empty()) {
-    if (context.cancelled() || wall_seconds() - s.begun > s.options.seconds) break;
+    if (context.cancelled() || wall_seconds() >= s.options.deadline) break;
     const Nest& best = s.found.nest;
     if (best.left_over.empty() && best.used_height <= s.options.enough) break;
     s.step();

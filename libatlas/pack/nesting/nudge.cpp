@@ -6,14 +6,15 @@
 namespace atlas::pack {
 namespace {
 
-// Twice as many rounds fill pages no more.
-constexpr int kRounds = 40;
+// Rounds without less overlap after which masks are taken to be stuck: with twice as many, settling
+// takes a third longer and pages become no fuller.
+constexpr int kVainNudges = 3;
 constexpr std::int32_t kReach = 2;  // of a move, in cells
 
 class Nudge {
  public:
-  Nudge(const Extent& page, std::vector<PlacedMask>& masks)
-      : page_(page), masks_(masks), pairs_(masks) {
+  Nudge(const Extent& page, std::vector<PlacedMask>& masks, double& work)
+      : page_(page), masks_(masks), work_(work), pairs_(masks) {
     for (const std::uint32_t i : pairs_.taking_part()) {
       PlacedMask& m = masks_[i];
       m.at.x = std::clamp(m.at.x, 0, page.width - m.mask->width);
@@ -24,20 +25,24 @@ class Nudge {
   }
 
   bool run() {
-    for (int round = 0; round < kRounds && pairs_.total() > 0; ++round) {
+    std::int64_t least = pairs_.total();
+    for (int vain = 0; vain <= kVainNudges && pairs_.total() > 0 && work_ > 0; ++vain) {
       pairs_.raise_weights();
       for (const std::uint32_t i : pairs_.taking_part()) {
         if (!pairs_.overlaps(i)) continue;
         masks_[i].at = lightest_near(i);
         pairs_.measure(i);
       }
+      if (pairs_.total() >= least) continue;
+      least = pairs_.total();
+      vain = -1;
     }
     return pairs_.total() == 0;
   }
 
  private:
   // Of equally light places, returns the one that is nearest to where the mask was at first.
-  BitPage::Place lightest_near(std::uint32_t i) const {
+  BitPage::Place lightest_near(std::uint32_t i) {
     const BitPage::Place now = masks_[i].at, first = begun_[i].at;
     BitPage::Place best = now;
     std::int64_t least = std::numeric_limits<std::int64_t>::max(), nearest = 0;
@@ -62,11 +67,12 @@ class Nudge {
   }
 
   // Returns any number above `most` if mask i is heavier there.
-  std::int64_t weigh(std::uint32_t i, BitPage::Place at, std::int64_t most) const {
+  std::int64_t weigh(std::uint32_t i, BitPage::Place at, std::int64_t most) {
     const PlacedMask moved{masks_[i].mask, at};
     std::int64_t weight = 0;
     for (const std::uint32_t j : pairs_.taking_part()) {
       if (j == i) continue;
+      work_ -= shared_rows(moved, masks_[j]);
       weight += std::int64_t(pairs_.weight(i, j)) * shared_cells(moved, masks_[j]);
       if (weight > most) break;
     }
@@ -75,14 +81,15 @@ class Nudge {
 
   Extent page_;
   std::vector<PlacedMask>& masks_;
+  double& work_;
   std::vector<PlacedMask> begun_;
   PairOverlaps pairs_;
 };
 
 }  // namespace
 
-bool nudge_apart(const Extent& page, std::vector<PlacedMask>& masks) {
-  return Nudge(page, masks).run();
+bool nudge_apart(const Extent& page, std::vector<PlacedMask>& masks, double& work) {
+  return Nudge(page, masks, work).run();
 }
 
 }  // namespace atlas::pack

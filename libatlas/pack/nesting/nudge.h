@@ -12,6 +12,6 @@ namespace atlas::pack {
 // each goes where its overlaps weigh least, and the weights of overlaps that persist grow. The
 // masks must fit the page, whose sides are in cells, and are moved into it first. Returns false if
 // some still overlap after a fixed number of rounds.
-bool nudge_apart(const Extent& page, std::vector<PlacedMask>& masks);
+bool nudge_apart(const Extent& page, std::vector<PlacedMask>& masks, double& work);
 
 }  // namespace atlas::pack

@@ -4,6 +4,7 @@
 #include <array>
 #include <limits>
 
+#include "libatlas/core/clock.h"
 #include "libatlas/core/random.h"
 #include "libatlas/pack/nesting/pair_overlaps.h"
 #include "libatlas/pack/nesting/weight_map.h"
@@ -68,7 +69,7 @@ class OverlapSearch {
         random_(options.seed) {}
 
   std::uint64_t run(const Context& context) {
-    while (work_ < options_.work && !context.cancelled()) {
+    while (work_ < options_.work && !context.cancelled() && wall_seconds() < options_.deadline) {
       if (pairs_.total() == 0) {
         if (height_ < nest_.used_height) take();
         if (height_ <= options_.low_enough || !lower()) break;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <span>
 
 #include "libatlas/core/context.h"
@@ -14,6 +15,7 @@ struct OverlapSearchOptions {
   std::int32_t low_enough = 0;  // the search ends when the strip is this low
   std::uint64_t work = 0;       // limit, in words that are examined (2 to 5 ns each)
   std::uint64_t seed = 1;
+  double deadline = std::numeric_limits<double>::infinity();  // wall_seconds(), for `best`
 };
 
 // Pushes the pieces of `nest` into a strip that is a little lower, and then searches for places at

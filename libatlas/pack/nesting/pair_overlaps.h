@@ -2,6 +2,7 @@
 // search, in which the weights of overlaps that persist grow (Gardeyn et al. 2025).
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -15,6 +16,13 @@ struct PlacedMask {
   const Mask* mask = nullptr;  // nullptr: takes no part, like a mask without cells
   BitPage::Place at;
 };
+
+// Returns the number of rows that shared_cells() looks at, at least 1.
+inline std::int32_t shared_rows(const PlacedMask& a, const PlacedMask& b) {
+  if (a.at.x >= b.at.x + b.mask->width || b.at.x >= a.at.x + a.mask->width) return 1;
+  const std::int32_t top = std::min(a.at.y + a.mask->height, b.at.y + b.mask->height);
+  return std::max(1, top - std::max(a.at.y, b.at.y));
+}
 
 // Returns the number of cells that both cover.
 std::int32_t shared_cells(const PlacedMask& a, const PlacedMask& b);

@@ -13,28 +13,18 @@
 namespace atlas::pack {
 namespace {
 
-// A page that is filled less than this gets a second draw of random starts; of the pages that were
-// measured, these were a third. The emptiest pages gain one to two percentage points, whereas more
-// starts for all pages would gain a tenth of that in the same time. A page that is filled less than
-// kPoorerFill gets a third draw.
-constexpr double kPoorFill = 0.715, kPoorerFill = 0.70;
-// Further draws raise the fill of 19 of 20 redrawn pages by at most these factors: after the first
-// draw, and after the second.
-constexpr double kMostRedrawn = 1.045, kMostRedrawnTwice = 1.025;
 // Only few starts are worth pressing, because the layout on cells nearly determines how well its
 // page can be pressed. More layouts gain more than pressing more starts in the same time.
 constexpr std::size_t kRoughStarts = 4, kThoroughStarts = 2;
 
-// Factors by which pressing and settling enlarge the charts of the largest start at most, in 19 of
-// 20 draws, and by which they do after rough pressing.
-constexpr double kMostByPressing = 1.045, kMostByThorough = 1.005;
-
 struct Effort {
   double first_step, last_step;
-  std::uint32_t sweeps;
 };
-constexpr Effort kRough{0.015, 0.006, 500}, kThorough{0.008, 0.003, 2000},
-    kPolish{0.002, 0.0008, 600};
+constexpr Effort kRough{0.015, 0.006}, kThorough{0.008, 0.003}, kPolish{0.002, 0.0008};
+// The share of a round's work for pushing charts together, most of which few sets of charts need.
+constexpr double kPushing = 0.6;
+// The same for each start that is settled.
+constexpr double kSettling = 0.15;
 
 class Press {
  public:
@@ -50,48 +40,35 @@ class Press {
   }
 
   PressedPage run() {
-    PressedPage best = begun_page(options_, kStandardDraws);
-    const double begun = wall_seconds();
-    while (!context_.cancelled()) {
-      draw(best);
-      const double done = spent_share(options_, wall_seconds() - begun, best);
+    PressedPage best;
+    SearchRounds rounds(options_, pressed_.size());
+    while (!over() && rounds.next()) {
+      draw(rounds, best);
+      context_.report("packing", 1 - 1 / (rounds.number() + 2.0));
       // Charts that could not be settled once, thin ones that interlock everywhere, never are.
       if (alone() || best.scale == 0) break;
-      if (options_.preset == PackPreset::best) {
-        if (!(done < 1)) break;
-        context_.report("packing", done);
-      } else if (!worth_another_draw(best.draws, fill(best), options_.wanted_fill)) {
-        break;
-      }
     }
     return best;
-  }
-
-  // Makes a draw: random starts, of which the best are pressed and settled.
-  // Gives up once a page of the scale `least` is out of reach.
-  void draw(PressedPage& best, double least = 0) {
-    std::vector<PressStart> starts = starts_.make(best.draws++, least / kMostByPressing);
-    for (const PressStart& s : starts) {
-      best.layouts += s.layouts;
-      best.work += s.work;
-    }
-    if (!alone()) {
-      if (!may_reach(least / kMostByPressing, starts)) return;
-      press_best(starts, kRoughStarts, kRough);
-      if (!may_reach(least / kMostByThorough, starts)) return;
-      press_best(starts, kThoroughStarts, kThorough);
-    }
-    settle_best(starts, best);
   }
 
  private:
   bool alone() const { return pressed_.size() <= 1; }
 
-  // Returns whether a start's charts have at least this scale.
-  bool may_reach(double least, const std::vector<PressStart>& starts) const {
-    return least == 0 || std::any_of(starts.begin(), starts.end(), [&](const PressStart& s) {
-             return !s.poses.empty() && starts_.scale_on_page(s.page) >= least;
-           });
+  bool over() const { return context_.cancelled() || wall_seconds() >= options_.deadline; }
+
+  // Makes random starts, of which the best are pressed and settled.
+  void draw(const SearchRounds& round, PressedPage& best) {
+    std::vector<PressStart> starts = starts_.make(round.number(), round.share());
+    const std::size_t pushed = layouts_of_round(kRoughStarts, round.share()) +
+                               2 * layouts_of_round(kThoroughStarts, round.share());
+    settle_work_ = kSettling * round.share() * round_work(pressed_.size());
+    push_work_ = kPushing * round.share() * round_work(pressed_.size()) / double(pushed);
+    for (const PressStart& s : starts) best.layouts += s.layouts;
+    if (!alone()) {
+      press_best(starts, layouts_of_round(kRoughStarts, round.share()), kRough);
+      press_best(starts, layouts_of_round(kThoroughStarts, round.share()), kThorough);
+    }
+    settle_best(starts, round.share(), best);
   }
 
   // Returns copies of the outlines of the charts that are pressed; nothing if all are.
@@ -119,12 +96,14 @@ class Press {
     SqueezeOptions options;
     options.first_step = effort.first_step;
     options.last_step = effort.last_step;
-    options.sweeps = effort.sweeps;
+    options.work = push_work_;
     const double texel = std::max(page.width, page.height) / options_.page_size;
     options.clearance = texel * (2 * options_.padding + 0.8 * options_.alignment);
     options.margin = texel * (options_.padding + 0.2 * options_.alignment);
     options.tolerance = texel * 0.5 * options_.alignment;
     options.square = !options_.free_aspect;
+    options.deadline = options_.deadline;
+    options.context = &context_;
     return options;
   }
 
@@ -163,16 +142,16 @@ class Press {
   // Presses the fullest start once more with finer outlines and places it exactly. The next start
   // follows if that fails, or if there are so few charts that chance decides which of two starts
   // becomes fuller.
-  void settle_best(std::vector<PressStart>& starts, PressedPage& best) const {
+  void settle_best(std::vector<PressStart>& starts, double share, PressedPage& best) const {
     constexpr std::size_t kFew = 16, kMost = 6;
     // Share of the fullest start's fill; an emptier start never becomes fuller.
     constexpr double kClose = 0.99;
     sort_starts(starts);
     const double fullest = goodness(starts.front().page, options_);
     bool settled = false;
-    std::size_t wanted = pressed_.size() <= kFew ? kThoroughStarts : 1;
+    std::size_t wanted = pressed_.size() <= kFew ? layouts_of_round(kThoroughStarts, share) : 1;
     for (std::size_t k = 0; k < std::min(starts.size(), kMost) && wanted > 0; ++k) {
-      if (context_.cancelled()) return;
+      if (over()) return;
       if (settled && goodness(starts[k].page, options_) < kClose * fullest) return;
       if (!settle_start(starts[k], best)) continue;
       settled = true;
@@ -225,7 +204,8 @@ class Press {
       target.angle = s.poses[i].second;
       target.from = {-center.x / starts_.scale(), -center.y / starts_.scale()};
     }
-    PressedPage page = settle({outlines_, targets, starts_.scale() * grow}, options_, context_);
+    PressedPage page =
+        settle({outlines_, targets, starts_.scale() * grow, settle_work_}, options_, context_);
     page.targets = std::move(targets);
     page.target_scale = starts_.scale() * grow;
     return page;
@@ -236,28 +216,11 @@ class Press {
   const Context& context_;
   std::vector<std::uint32_t> pressed_;  // the others are specks
   std::vector<ChartOutline> own_outlines_;
-  double area_ = 0;
+  double area_ = 0, push_work_ = 0, settle_work_ = 0;
   PressStarts starts_;
 };
 
 }  // namespace
-
-PressedPage begun_page(const FitSearchOptions& options, std::uint32_t draws) {
-  PressedPage page;
-  if (options.preset != PackPreset::best || options.tried == 0) return page;
-  page.layouts = options.tried;
-  page.draws = draws;
-  return page;
-}
-
-double spent_share(const FitOptions& options, double seconds, const PressedPage& best) {
-  if (options.effort == 0) return seconds / options.time_budget;
-  // 1250 layouts of 60 triangles of one size, which all fit nearly everywhere, took 3.5 s: each
-  // examines 2 million words on a page of 512 cells a side. Such a layout counts as several.
-  constexpr double kWordsALayout = 500'000;
-  const double work = double(best.work) / kWordsALayout;
-  return std::max(double(best.layouts), work) / double(options.effort);
-}
 
 bool worth_pressing(std::span<const ChartOutline> outlines, const FitOptions& options) {
   // Share of the page at the largest scale; the page may even become smaller.
@@ -274,19 +237,6 @@ bool worth_pressing(std::span<const ChartOutline> outlines, const FitOptions& op
 PressedPage press_outlines(std::span<const ChartOutline> outlines, const FitSearchOptions& options,
                            const Context& context) {
   return Press(outlines, options, context).run();
-}
-
-void draw_again(std::span<const ChartOutline> outlines, const FitSearchOptions& options,
-                const Context& context, PressedPage& page) {
-  double area = 0;
-  for (const ChartOutline& o : outlines) area += o.area;
-  const double least = options.page_size * std::sqrt(options.wanted_fill / area);
-  Press(outlines, options, context).draw(page, least);
-}
-
-bool worth_another_draw(std::uint32_t draws, double fill, double wanted_fill) {
-  return draws < kStandardDraws && fill < (draws > 1 ? kPoorerFill : kPoorFill) &&
-         (draws > 1 ? kMostRedrawnTwice : kMostRedrawn) * fill >= wanted_fill;
 }
 
 }  // namespace atlas::pack

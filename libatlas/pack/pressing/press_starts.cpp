@@ -20,32 +20,24 @@ constexpr double kExpectedFill = 0.8;
 // Relative to the page's side: maximum length of a rasterised chart.
 constexpr double kMostSides = 2;
 constexpr double kMostCells = 1 << 21;  // number of cells of the finest grid in one chart's box
+// Starts of a round. Widths matter more on a square page, which is no fuller where its longer side
+// alone decides: 8 sets of charts filled 0.715 of it with 20 starts and 0.707 with 10, but pages of
+// any shape are no fuller with 20.
+constexpr std::size_t kMostStarts = 10, kMostSquareStarts = 20;
 // Charts in all starts together; fewer charts get more starts.
-constexpr std::size_t kStartedCharts = 480;
-constexpr std::size_t kMostStarts = 20;
-// The shares of their limits after which searches are compared, and the worse half given up: for
-// searches of few layouts, and for those of `best`, in which only the last four get many layouts.
-// When searches of few layouts were compared after a quarter and a half, machine parts filled 0.3 %
-// less.
-// Searches over few charts are not compared, because one lucky layout decides there. Neither are
-// those of the first draw, whose cells are coarse: they are cheap, and six models filled 0.7 %
-// less.
-constexpr std::array kLegs{1 / 3.0, 2 / 3.0, 1.0};
-constexpr std::array kAllAtOnce{1.0};
-constexpr std::array kLongLegs{1 / 32.0, 1 / 16.0, 1 / 8.0, 1.0};
-// Factor by which the last two thirds of the search make charts larger at most.
-constexpr double kMostBySearch = 1.005;
-constexpr std::size_t kLeastLeft = 4, kFewCharts = 5;
-// Words examined by all starts together, 2 ns each.
-constexpr std::uint64_t kSearchWork = 160'000'000;
-constexpr std::uint64_t kLayouts = 32;  // layouts of one start
-// Of the starts of a round, so many are made lower by letting charts overlap for a while, with this
-// work in words for each. With twice the work pages fill 0.1 points more, and packing takes a
-// quarter longer.
+constexpr std::size_t kStartedCharts = 960;
+// By how much the widths of starts differ, relative to the square page's side.
+constexpr double kSpread = 0.2, kSquareSpread = 0.1;
+// Of the starts of a round, so many are made lower by letting charts overlap for a while.
 constexpr std::size_t kLowered = 4;
-constexpr std::uint64_t kOverlapWork = 10'000'000;
-// Maximum number of doublings: `best` doubles kSearchWork, kLayouts and kOverlapWork each round.
-constexpr std::uint32_t kMostDoublings = 4, kFirstDoublings = 2;
+// Shares of a round's work: searching for orders of placing charts, and letting charts overlap.
+// What is left is pressing.
+constexpr double kOrders = 0.4, kOverlaps = 0.4;
+// The shares of their limits after which the searches of long rounds are compared, and the worse
+// half given up. Searches over few charts are not compared, because one lucky layout decides there.
+constexpr std::array kLegs{1 / 32.0, 1 / 16.0, 1 / 8.0, 1.0};
+constexpr std::array kAllAtOnce{1.0};
+constexpr std::size_t kLeastLeft = 4, kFewCharts = 5;
 constexpr std::uint32_t kDirections = 24;
 // The number of cells across a page: normally, for many charts, and from the second draw on. Finer
 // cells lose less of the gaps between charts with narrow limbs, but they take longer.
@@ -55,6 +47,10 @@ constexpr std::size_t kManyCharts = 48;
 // is the width of the narrowest strip.
 constexpr double kLong = 1.2, kNarrow = 0.4;
 constexpr int kTurns = 180;  // number of directions of a single chart within a quarter turn
+
+std::size_t most_starts(const FitOptions& options) {
+  return options.free_aspect ? kMostStarts : kMostSquareStarts;
+}
 
 }  // namespace
 
@@ -82,32 +78,20 @@ PressStarts::PressStarts(std::span<const ChartOutline> outlines, const FitSearch
   draw();
 }
 
-std::vector<PressStart> PressStarts::make(std::uint32_t round, double least) {
+std::vector<PressStart> PressStarts::make(std::uint32_t round, double share) {
   draw_pieces(round > 0 ? kFineCells : outlines_.size() < kManyCharts ? kCells : kCellsOfMany);
   const std::size_t n = std::max<std::size_t>(1, outlines_.size());
-  const std::size_t count =
-      n == 1 ? 1 : std::clamp<std::size_t>(kStartedCharts / n, 1, kMostStarts);
   if (n == 1) return {alone()};
+  const std::size_t count = std::clamp<std::size_t>(kStartedCharts / n, 1,
+                                                    layouts_of_round(most_starts(options_), share));
+  const double work = kOrders * share * round_work(n) / (double(count) * kWordsOfPlacing);
   std::vector<Runner> runners;
-  for (std::size_t k = 0; k < count; ++k) runners.push_back(runner(k, count, round));
-  if (race(runners, round, least)) lower_fullest(runners, round);
+  for (std::size_t k = 0; k < count; ++k) runners.push_back(runner(k, count, round, work));
+  race(runners, round);
+  lower_fullest(runners, share);
   std::vector<PressStart> starts;
   for (Runner& r : runners) starts.push_back(std::move(r.start));
   return starts;
-}
-
-// Returns how often the number of layouts is doubled in a round. Only `best` doubles it. If it goes
-// on where `standard` has ended, it begins with kFirstDoublings.
-std::uint32_t PressStarts::doublings_in(std::uint32_t round) const {
-  if (options_.preset != PackPreset::best) return 0;
-  const bool goes_on = options_.tried > 0 && round >= kStandardDraws;
-  return std::min(goes_on ? round - kStandardDraws + kFirstDoublings : round, kMostDoublings);
-}
-
-std::span<const double> PressStarts::legs(std::uint32_t round) const {
-  if (pieces_.size() <= kFewCharts || round == 0) return kAllAtOnce;
-  if (doublings_in(round) < kFirstDoublings) return kLegs;
-  return kLongLegs;
 }
 
 double PressStarts::scale_on_page(const SqueezePage& page) const {
@@ -129,31 +113,28 @@ void PressStarts::run(std::vector<Runner*>& runners, double share) const {
 }
 
 // Runs the searches of all starts. Whether a strip's width suits the charts shows early, so the
-// worse half is given up twice on the way. Twelve searches take three fifths of the time then.
-bool PressStarts::race(std::vector<Runner>& runners, std::uint32_t round, double least) const {
+// worse half is given up on the way of long rounds.
+void PressStarts::race(std::vector<Runner>& runners, std::uint32_t round) const {
   std::vector<Runner*> left;
   for (Runner& r : runners) left.push_back(&r);
-  if (least > 0) {
-    run(left, kLegs[0]);
-    if (scale_on_page(left.front()->start.page) * kMostBySearch < least) return false;
-  }
-  for (const double share : legs(round)) {
+  const bool at_once = round == 0 || pieces_.size() <= kFewCharts;
+  for (const double share : at_once ? std::span<const double>(kAllAtOnce) : std::span(kLegs)) {
     run(left, share);
     left.resize(std::clamp<std::size_t>((left.size() + 1) / 2, std::min(kLeastLeft, left.size()),
                                         left.size()));
   }
-  return true;
 }
 
 // Makes the layouts of the fullest starts lower than any order of placing charts does.
-void PressStarts::lower_fullest(std::vector<Runner>& runners, std::uint32_t round) const {
+void PressStarts::lower_fullest(std::vector<Runner>& runners, double share) const {
   std::vector<Runner*> fullest;
   for (Runner& r : runners)
     if (!r.start.poses.empty()) fullest.push_back(&r);
   std::stable_sort(fullest.begin(), fullest.end(), [&](const Runner* a, const Runner* b) {
     return goodness(a->start.page, options_) > goodness(b->start.page, options_);
   });
-  fullest.resize(std::min(fullest.size(), kLowered));
+  fullest.resize(std::min(fullest.size(), layouts_of_round(kLowered, share)));
+  const double work = kOverlaps * share * round_work(pieces_.size()) / double(fullest.size());
   parallel_for(context_, fullest.size(), 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t k = begin; k < end; ++k) {
       Runner& r = *fullest[k];
@@ -162,9 +143,10 @@ void PressStarts::lower_fullest(std::vector<Runner>& runners, std::uint32_t roun
       overlap.width = r.width;
       // A square page whose width decides does not become smaller.
       overlap.low_enough = options_.free_aspect ? 0 : r.width;
-      overlap.work = kOverlapWork << doublings_in(round);
+      overlap.work = std::uint64_t(work);
+      overlap.deadline = options_.deadline;
       overlap.seed = r.seed;
-      r.start.work += search_overlaps(pieces_, overlap, context_, nest);
+      search_overlaps(pieces_, overlap, context_, nest);
       take(nest, r);
     }
   });
@@ -173,7 +155,8 @@ void PressStarts::lower_fullest(std::vector<Runner>& runners, std::uint32_t roun
 // Rasterises the charts as rigid bodies. The search only needs outlines as fine as its cells,
 // because exact masks are used later.
 void PressStarts::draw() {
-  const int fine = std::max(1, options_.page_size / 1024);
+  // What only compares ways to cut charts makes do with bodies that are half as fine.
+  const int fine = std::max(1, options_.page_size / 1024) * (options_.first_round < 1 ? 2 : 1);
   const std::size_t n = outlines_.size();
   drawn_.resize(n);
   parallel_for(context_, n, 1, [&](std::size_t begin, std::size_t end) {
@@ -224,7 +207,9 @@ void PressStarts::draw_one(std::size_t i, int fine) {
 // the strip.
 std::int32_t PressStarts::strip_width(std::size_t k, std::size_t count, double shift) const {
   const double side = side_ * std::sqrt(kExpectedFill / 0.69) / cell_;
-  const double spread = (count > 1 ? 0.2 * double(k) / double(count - 1) - 0.1 : 0) + shift;
+  const double most_spread = options_.free_aspect ? kSpread : kSquareSpread;
+  const double spread =
+      (count > 1 ? most_spread * (double(k) / double(count - 1) - 0.5) : 0) + shift;
   std::int32_t narrowest = 0, longest = 0;
   for (const Piece& p : pieces_) {
     std::int32_t least = std::numeric_limits<std::int32_t>::max();
@@ -235,24 +220,22 @@ std::int32_t PressStarts::strip_width(std::size_t k, std::size_t count, double s
     if (p.cells() > 0) narrowest = std::max(narrowest, least);
   }
   const bool along = options_.free_aspect && longest > kLong * side && k % 2 == 1;
-  const bool narrow = options_.free_aspect && !along && k % 4 == 0;
+  const bool narrow = options_.free_aspect && !along && k % 4 == 2;
   double width = side * (1 + spread);
   if (along) width = longest * (1.1 + spread) + 1;
-  if (narrow) width = side * (kNarrow + (1 - kNarrow) * double(k) / double(count));
+  if (narrow) width = side * (kNarrow + (1 - kNarrow) * double(k - 2) / double(count));
   return std::max(narrowest, static_cast<std::int32_t>(width));
 }
 
-PressStarts::Runner PressStarts::runner(std::size_t k, std::size_t count,
-                                        std::uint32_t round) const {
-  Random random(options_.seed * 0x10001 + round * kMostStarts + k);
+PressStarts::Runner PressStarts::runner(std::size_t k, std::size_t count, std::uint32_t round,
+                                        double work) const {
+  Random random(options_.seed * 0x10001 + round * most_starts(options_) + k);
   const double shift = round > 0 ? 0.04 * (random.unit() - 0.5) : 0;
   NestSearchOptions search;
   search.width = strip_width(k, count, shift);
   search.seed = random.next();
-
-  const std::uint32_t doublings = doublings_in(round);
-  search.work = kSearchWork / count << doublings;
-  search.layouts = kLayouts << doublings;
+  search.work = std::uint64_t(work);
+  search.deadline = options_.deadline;
   // If there are only few charts, the search changes their order often enough.
   const LargestBy by = pieces_.size() < kManyCharts ? LargestBy::cells : LargestBy::boxes;
   return {NestSearch(pieces_, plan_by_size(pieces_, by), search), search.width, random.next(), {}};
@@ -261,7 +244,6 @@ PressStarts::Runner PressStarts::runner(std::size_t k, std::size_t count,
 void PressStarts::note(const NestSearchResult& found, Runner& runner) const {
   PressStart& start = runner.start;
   start.layouts = found.layouts;
-  start.work = found.work;
   if (found.nest.left_over.empty()) take(found.nest, runner);
 }
 

@@ -13,9 +13,6 @@
 
 namespace atlas::pack {
 
-// Number of draws that presets other than `best` make of a page at most.
-inline constexpr std::uint32_t kStandardDraws = 3;
-
 // A chart in the frame of its mask, at the scale of the starts: the shape's point p lies at origin
 // + scale p.
 struct DrawnChart {
@@ -34,7 +31,7 @@ struct DrawnChart {
 struct PressStart {
   std::vector<std::pair<Vec2d, double>> poses;  // one per chart: centre and angle
   SqueezePage page;
-  std::uint64_t layouts = 0, work = 0;
+  std::uint64_t layouts = 0;
 };
 
 // Returns a number that is higher the smaller the page is; 0 for a page without area. If the page
@@ -50,10 +47,9 @@ class PressStarts {
   double scale() const { return scale_; }
   std::span<const DrawnChart> charts() const { return drawn_; }  // one per outline
 
-  // Makes layouts for several widths of the page, by a search on coarse cells. Each round gives
-  // other layouts. From the second round on, cells are finer.
-  // Gives the searches up early if no start is likely to reach the scale `least`.
-  std::vector<PressStart> make(std::uint32_t round, double least = 0);
+  // Makes layouts for several widths of the page, by a search on coarse cells, with this share of
+  // round_work(). Each round gives other layouts. From the second round on, cells are finer.
+  std::vector<PressStart> make(std::uint32_t round, double share);
 
   // Returns the scale that charts have if this page is enlarged to a square page of full size.
   double scale_on_page(const SqueezePage& page) const;
@@ -70,13 +66,10 @@ class PressStarts {
     std::uint64_t seed;
     PressStart start;
   };
-  Runner runner(std::size_t k, std::size_t count, std::uint32_t round) const;
-  std::uint32_t doublings_in(std::uint32_t round) const;
-  std::span<const double> legs(std::uint32_t round) const;
-  // Returns false if it has given up.
-  bool race(std::vector<Runner>& runners, std::uint32_t round, double least) const;
+  Runner runner(std::size_t k, std::size_t count, std::uint32_t round, double work) const;
+  void race(std::vector<Runner>& runners, std::uint32_t round) const;
   void run(std::vector<Runner*>& runners, double share) const;
-  void lower_fullest(std::vector<Runner>& runners, std::uint32_t round) const;
+  void lower_fullest(std::vector<Runner>& runners, double share) const;
   void note(const NestSearchResult& found, Runner& runner) const;
   void take(const Nest& nest, Runner& runner) const;
   PressStart alone() const;

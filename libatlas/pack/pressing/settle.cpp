@@ -19,6 +19,7 @@ class Settler {
       : targets_(charts.targets),
         outlines_(charts.outlines),
         scale_(charts.scale),
+        work_(charts.work),
         options_(options),
         context_(context) {
     order_.resize(targets_.size());
@@ -76,7 +77,7 @@ class Settler {
       page.width = std::min(side, std::max(page.width, std::max(0, x) + mask.width));
       page.height = std::min(side, std::max(page.height, std::max(0, y) + mask.height));
     }
-    if (!nudge_apart(page, masks)) return false;
+    if (!nudge_apart(page, masks, work_)) return false;
     for (std::uint32_t i = 0; i < masks.size(); ++i)
       if (masks[i].mask) note(i, masks[i].at, result);
     return true;
@@ -267,7 +268,7 @@ class Settler {
 
   std::span<const SettleTarget> targets_;
   std::span<const ChartOutline> outlines_;
-  double scale_;
+  double scale_, work_;
   const FitOptions& options_;
   const Context& context_;
   std::vector<std::uint32_t> order_, displaced_, specks_;

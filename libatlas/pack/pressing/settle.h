@@ -1,6 +1,7 @@
 // Internal: replaces rigid bodies that nearly touch by exact masks on the page's cells.
 #pragma once
 
+#include <limits>
 #include <span>
 
 #include "libatlas/pack/pressing/press.h"
@@ -12,6 +13,9 @@ struct SettleCharts {
   std::span<const ChartOutline> outlines;
   std::span<const SettleTarget> targets;  // one per chart
   double scale = 1;
+  // Limit for moving charts apart, in words (about 2 ns each). After that they are placed one after
+  // another.
+  double work = std::numeric_limits<double>::infinity();
 };
 
 // Places every chart on free cells as near to its target as possible, at a scale below that of the

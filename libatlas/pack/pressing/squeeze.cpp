@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "libatlas/core/clock.h"
 #include "libatlas/core/portable_math.h"
 #include "libatlas/core/sort_total.h"
 #include "libatlas/pack/pressing/contacts.h"
@@ -27,7 +28,6 @@ class Solver {
     for (std::uint32_t s = 0; s < sweeps; ++s) {
       contacts_.update(poses_);
       const double deepest = sweep(page);
-      ++sweeps_;
       if (deepest <= options_.tolerance) return true;
       if (s % 16 == 15) {
         if (deepest > 0.98 * before) return false;
@@ -39,7 +39,7 @@ class Solver {
 
   const std::vector<Pose>& poses() const { return poses_; }
   void set_poses(const std::vector<Pose>& poses) { poses_ = poses; }
-  std::uint64_t sweeps() const { return sweeps_; }
+  double work() const { return work_; }  // in words
   void stretch(double x, double y) {
     for (Pose& p : poses_) {
       p.at.x *= x;
@@ -66,12 +66,14 @@ class Solver {
     double deepest = 0;
     for (std::uint32_t i = 0; i < bodies_.size(); ++i) {
       const Contacts::Wall& wall = contacts_.walls()[i];
+      work_ += double(wall.points.size());
       for (const Contacts::Contact& c : wall.points)
         if (wall.moved >= c.room)
           deepest = std::max(deepest, push_in(i, poses_[i].to_page(c.point), page));
     }
     for (std::size_t k = 0; k < contacts_.near_count(); ++k) {
       const Contacts::Pair& pair = contacts_.near(k);
+      work_ += double(pair.of_i.size() + pair.of_j.size());
       for (const Contacts::Contact& c : pair.of_i)
         if (pair.moved >= c.room) deepest = std::max(deepest, push_out(pair.i, pair.j, c.point));
       for (const Contacts::Contact& c : pair.of_j)
@@ -82,6 +84,7 @@ class Solver {
 
   // Pushes point `local` of i out of j. Returns how deep it was.
   double push_out(std::uint32_t i, std::uint32_t j, Vec2d local) {
+    work_ += kWordsAContact;
     DistanceField::Sample s;
     const Vec2d p = poses_[i].to_page(local);
     if (!sample(j, p, s)) return 0;
@@ -120,6 +123,7 @@ class Solver {
   // Moves i along the normal, and j in the opposite direction unless it is kWall. Lighter bodies
   // move more.
   void resolve(std::uint32_t i, std::uint32_t j, const Overlap& overlap) {
+    work_ += kWordsAPush;
     const Vec2d n = overlap.normal;
     const auto lever = [&](std::uint32_t b) {
       const Vec2d r{overlap.point.x - poses_[b].at.x, overlap.point.y - poses_[b].at.y};
@@ -163,8 +167,9 @@ class Solver {
   const SqueezeOptions& options_;
   std::vector<Pose> poses_;
   Contacts contacts_;
-  std::uint64_t sweeps_ = 0;
+  double work_ = 0;
   static constexpr double kMostPush = 4;
+  static constexpr double kWordsAContact = 5, kWordsAPush = 15;
 };
 
 // Orders points such that every kArc consecutive ones lie close together, by splitting the set
@@ -241,7 +246,7 @@ SqueezePage squeeze(std::span<Body> bodies, SqueezePage page, const SqueezeOptio
   // The bodies may overlap a little at the start. Then the page is enlarged as little as necessary.
   constexpr double kMostRoom = 0.05;  // maximum enlargement of a side in one step
   for (double more = 0.5 * options.first_step; !solver.relax(page, 100); more *= 1.5) {
-    if (more > kMostRoom) return {};
+    if (more > kMostRoom || solver.work() > options.work) return {};
     page = {page.width * (1 + more), page.height * (1 + more)};
     solver.stretch(1 + more, 1 + more);
   }
@@ -250,7 +255,11 @@ SqueezePage squeeze(std::span<Body> bodies, SqueezePage page, const SqueezeOptio
   double step = options.first_step;
   {
     int failed = 0;
-    for (int turn = 0; solver.sweeps() < options.sweeps && step > options.last_step;) {
+    const auto over = [&] {
+      return (options.context && options.context->cancelled()) ||
+             wall_seconds() >= options.deadline;
+    };
+    for (int turn = 0; solver.work() < options.work && step > options.last_step && !over();) {
       const double fx = turn == 2 ? 1 : 1 - step, fy = turn == 1 ? 1 : 1 - step;
       const SqueezePage smaller{page.width * fx, page.height * fy};
       solver.stretch(fx, fy);

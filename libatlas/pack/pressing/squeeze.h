@@ -1,9 +1,11 @@
 // Internal: pushes charts together as rigid bodies.
 #pragma once
 
+#include <limits>
 #include <span>
 #include <vector>
 
+#include "libatlas/core/context.h"
 #include "libatlas/pack/outlines/distance_field.h"
 
 namespace atlas::pack {
@@ -31,12 +33,16 @@ Body make_body(const Mask& mask, double cell, double reach, double spacing);
 void make_arcs(Body& body);
 
 struct SqueezeOptions {
-  double clearance = 2;  // distance kept between two charts
-  double margin = 1;     // distance kept from the page's edges
-  double tolerance = 1;  // by how much both may be violated
-  std::uint32_t sweeps = 2000;
-  double first_step = 0.01, last_step = 0.0008;  // shares of the page's sides
-  bool square = false;                           // the page is square and stays square
+  double clearance = 2;                                   // distance kept between two charts
+  double margin = 1;                                      // distance kept from the page's edges
+  double tolerance = 1;                                   // by how much both may be violated
+  double work = std::numeric_limits<double>::infinity();  // limit, in words (about 2 ns each)
+  double first_step = 0.01, last_step = 0.0008;           // shares of the page's sides
+  bool square = false;                                    // the page is square and stays square
+  // The page is made no smaller once the context is cancelled, if there is one, or this time has
+  // come (wall_seconds()).
+  const Context* context = nullptr;
+  double deadline = std::numeric_limits<double>::infinity();
 };
 
 struct SqueezePage {
