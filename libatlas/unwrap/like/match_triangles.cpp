@@ -1,8 +1,10 @@
 #include "libatlas/unwrap/like/match_triangles.h"
 
 #include <algorithm>
+#include <array>
 #include <functional>
 #include <glm/geometric.hpp>
+#include <tuple>
 #include <utility>
 
 #include "libatlas/core/glm_bridge.h"
@@ -16,7 +18,9 @@ namespace {
 struct Key {
   std::array<std::uint32_t, 3> places;
   std::uint32_t triangle;
-  auto operator<=>(const Key&) const = default;
+  bool operator<(const Key& other) const {  // the arrays of libc++ 14 have no <=>
+    return std::tie(places, triangle) < std::tie(other.places, other.triangle);
+  }
 };
 
 Key key_of(std::array<std::uint32_t, 3> places, std::uint32_t triangle) {
