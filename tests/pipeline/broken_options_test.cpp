@@ -127,10 +127,17 @@ TEST(BrokenOptions, OfUnwrappingAreRefused) {
   using O = UnwrapOptions;
   const Triangle mesh;
   Walk<O> walk =
-      of_pages<O>() + Walk<O>{{{"mip_levels", [](O& o) { o.mip_levels = -1; }},
-                               {"texels_per_unit", [](O& o) { o.texels_per_unit = kNan; }},
-                               {"charts", [](O& o) { o.charts.max_stretch = kNan; }}},
-                              {"part_gaps"}};
+      of_pages<O>() +
+      Walk<O>{{{"mip_levels", [](O& o) { o.mip_levels = -1; }},
+               {"texels_per_unit", [](O& o) { o.texels_per_unit = kNan; }},
+               {"charts", [](O& o) { o.charts.max_stretch = kNan; }},
+               {"like",
+                [](O& o) {
+                  static const Extent page{64, 64};
+                  static const EarlierUvs earlier{.pages = {&page, 1}, .tolerance = kNan};
+                  o.like = &earlier;
+                }}},
+              {"part_gaps"}};
   expect_each_is_refused(walk,
                          [&](const O& o) { return status_of(unwrap_mesh(mesh.view(), o, {})); });
 }
@@ -303,7 +310,17 @@ TEST(BrokenOptions, OfToneCurvesAreRefused) {
   expect_each_is_refused(walk, [](const O& o) { return check_options(o); });
 }
 
+// Good options with which only uvs of each place are refused.
+void meshes_once(ExportOptions& options) {
+  options.target = "a.glb";
+  options.keep_scene = options.charts_only = true;
+  options.mesh_uvs = MeshUvs::meshes;
+}
+
 TEST(BrokenOptions, OfExportsAreRefused) {
+  ExportOptions once;
+  meshes_once(once);
+  EXPECT_TRUE(check_options(once).ok()) << check_options(once).message();
   using O = ExportOptions;
   const Walk<O> walk{
       {{"target", [](O& o) { o.target = "a.txt"; }},
@@ -335,7 +352,18 @@ TEST(BrokenOptions, OfExportsAreRefused) {
        {"lightmap_pages", [](O& o) { o.lightmap_pages = 0; }},
        {"mesh_uvs", [](O& o) { beyond(o.mesh_uvs); }},
        {"uv_set", [](O& o) { o.uv_set = 8; }},
-       {"false_colour", [](O& o) { o.false_colour = "a.jpg"; }}},
+       {"false_colour", [](O& o) { o.false_colour = "a.jpg"; }},
+       {"seams",
+        [](O& o) {
+          meshes_once(o);
+          o.seams = {1, 0, 0};
+        }},
+       {"like",
+        [](O& o) {
+          static const LoadedScene earlier;
+          meshes_once(o);
+          o.like = &earlier;
+        }}},
       {"larger_plain_page", "square_plain_page", "plain_part_gaps", "follow_textures",
        "split_at_light", "more_mip_levels", "outlines", "simplify", "exr", "charts_only",
        "colours_are_light", "extra_files", "durable", "report_pictures", "measure_error"}};
