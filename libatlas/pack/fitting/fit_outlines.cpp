@@ -12,6 +12,7 @@
 #include "libatlas/pack/nesting/overlap_search.h"
 #include "libatlas/pack/outlines/shape_check.h"
 #include "libatlas/pack/pressing/specks.h"
+#include "libatlas/pack/pressing/straight_page.h"
 
 namespace atlas::pack {
 namespace {
@@ -292,7 +293,8 @@ Result<std::optional<FitResult>> search_outlines(const FitCharts& charts,
   // Whether `best` also searches over cells, and how long, must not hang on what pressing has
   // found, which hangs on the effort.
   const bool both = options.preset == PackPreset::best ||
-                    (best && worth_searching_late(best->utilization, options));
+                    (best && (worth_searching_late(best->utilization, options) ||
+                              (!options.free_aspect && is_straight(charts.outlines))));
   if (best && !both) return best;
   const bool pressed = !specks && may_be_pressed(charts.outlines, options);
   FitSearchOptions by_cells = options;
