@@ -76,7 +76,8 @@ void make_tiles(const PlacedCharts& placed, World& world) {
     all.uv_indices.insert(all.uv_indices.end(), page.uv_indices.begin(), page.uv_indices.end());
     all.face_sizes.insert(all.face_sizes.end(), page.face_sizes.begin(), page.face_sizes.end());
   }
-  world.pages.assign(1, std::move(all));
+  world.pages.clear();
+  world.pages.push_back(std::move(all));
   world.uv_tiles.resize(world.uvs.size());
   for (const ChartPlacement& placement : placed.placements) {
     const Chart& chart = placed.charts.charts[placement.chart];

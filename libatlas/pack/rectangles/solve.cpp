@@ -111,8 +111,10 @@ Layout pack_large_pages(const Problem& problem, const PackOptions& options, std:
   if (quick) best = better(std::move(best), pack_by(problem, Order::area));
   if (!done()) best = better(std::move(best), pack_widest_first(problem));
   if (!done()) best = better(std::move(best), pack_by(problem, Order::height));
-  if (!done() && (options.crop || (!problem.allow_rotation && !quick)))
-    best = better(std::move(best), pack_by_height(problem, std::max(1u, best.pages)));
+  if (!done() && (options.crop || (!problem.allow_rotation && !quick))) {
+    const std::uint32_t pages = std::max(1u, best.pages);
+    best = better(std::move(best), pack_by_height(problem, pages));
+  }
   return best;
 }
 
