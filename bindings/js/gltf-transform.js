@@ -100,7 +100,7 @@ async function unwrapInstances(document, options) {
     }
     nodes.forEach((node, k) => {
       const [x, y, width, height] = [offset[2 * k], offset[2 * k + 1], scale[2 * k], scale[2 * k + 1]];
-      node.setExtras({ ...node.getExtras(), lightmapScale: [width, height], lightmapOffset: [x, 1 - y - height] });
+      node.setExtras({ ...node.getExtras(), lightmapScale: [width, height], lightmapOffset: [x, Math.max(0, 1 - y - height)] });
     });
   });
 }
