@@ -33,6 +33,7 @@ class FreeRoom {
       : shapes_(shapes), taken_(taken), options_(options), context_(context) {
     pages_.assign(taken.pages.begin(), taken.pages.end());
     for (const TakenShape& t : taken.shapes) outlines_.push_back(pack::outline_of(t.shape));
+    shape_outlines_ = pack::outlines_of(shapes, context);
   }
 
   Result<BesideResult> run() {
@@ -53,13 +54,8 @@ class FreeRoom {
   bool place_all() {
     placements_.assign(shapes_.size(), {});
     choose_cell();
-    pack::PieceOptions how;
-    how.padding = options_.padding;
-    how.cell = cell_;
-    how.directions = directions();
-    const std::vector<Piece> pieces =
-        pack::make_pieces(pack::outlines_of(shapes_, context_), how, context_);
     if (context_.cancelled()) return false;
+    const std::vector<Piece>& pieces = pieces_;
     pack::NestPlan plan = pack::plan_by_size(pieces);
     for (std::uint32_t p = 0; p < pages_.size() && !plan.order.empty(); ++p) {
       BitPage page(pages_[p].width / cell_, pages_[p].height / cell_, pack::longest_run(pieces));
@@ -76,11 +72,19 @@ class FreeRoom {
 
   std::uint32_t directions() const { return options_.allow_rotation ? kDirections : 1; }
 
+  // Chooses cells for the present pages, and draws the shapes in them if they have changed.
   void choose_cell() {
     std::int32_t longest = 1;
     for (const Extent& page : pages_) longest = std::max({longest, page.width, page.height});
-    cell_ = options_.alignment;
-    while (longest / cell_ > kMostCellsAlong) cell_ *= 2;
+    std::int32_t cell = options_.alignment;
+    while (longest / cell > kMostCellsAlong) cell *= 2;
+    if (cell == cell_) return;
+    cell_ = cell;
+    pack::PieceOptions how;
+    how.padding = options_.padding;
+    how.cell = cell_;
+    how.directions = directions();
+    pieces_ = pack::make_pieces(shape_outlines_, how, context_);
   }
 
   // Takes the cells of the shapes that stay.
@@ -171,8 +175,9 @@ class FreeRoom {
   const PageOptions& options_;
   const Context& context_;
   std::vector<Extent> pages_;
-  std::vector<ChartOutline> outlines_;  // of the taken shapes
-  std::int32_t cell_ = 1;               // texels
+  std::vector<ChartOutline> outlines_, shape_outlines_;  // of the taken shapes; of the others
+  std::int32_t cell_ = 0;                                // texels
+  std::vector<Piece> pieces_;                            // of the others, in cells
   std::vector<OutlinePlacement> placements_;
   std::vector<std::uint32_t> left_over_;
 };

@@ -127,8 +127,7 @@ pack::FitSearchOptions for_items(std::size_t items, const pack::FitSearchOptions
   options.pages =
       std::min(given.pages, static_cast<std::uint32_t>(std::max<std::size_t>(1, items)));
   if (!options.shapes.empty()) options.alignment = outline_alignment(options);
-  if (options.preset == PackPreset::best && options.effort == 0)
-    options.deadline = std::min(options.deadline, wall_seconds() + options.time_budget);
+  options.deadline = ending(options);
   return options;
 }
 

@@ -30,19 +30,6 @@ ChartPlacement boxed(const FitPlacement& from, const LayoutOptions& options) {
   return to;
 }
 
-ChartPlacement outlined(const FitPlacement& from, const LayoutOptions& options) {
-  ChartPlacement to;
-  to.outlined = true;
-  to.offset = from.offset;
-  to.cosine = portable::cos(from.angle);
-  to.sine = portable::sin(from.angle);
-  to.x = from.box.x + options.padding;
-  to.y = from.box.y + options.padding;
-  to.width = from.box.width - 2 * options.padding;
-  to.height = from.box.height - 2 * options.padding;
-  return to;
-}
-
 // Returns the area of the charts at scale 1, in texels.
 double full_texels(const ChartSet& charts, std::span<const Vec2d> texels_per_unit) {
   double texels = 0;
@@ -52,6 +39,20 @@ double full_texels(const ChartSet& charts, std::span<const Vec2d> texels_per_uni
 }
 
 }  // namespace
+
+ChartPlacement outlined_placement(const Rect& box, double angle, Vec2d offset,
+                                  std::int32_t padding) {
+  ChartPlacement to;
+  to.outlined = true;
+  to.offset = offset;
+  to.cosine = portable::cos(angle);
+  to.sine = portable::sin(angle);
+  to.x = box.x + padding;
+  to.y = box.y + padding;
+  to.width = box.width - 2 * padding;
+  to.height = box.height - 2 * padding;
+  return to;
+}
 
 ChartOutlines::ChartOutlines(const ChartSet& set, std::span<const Vec2d> density)
     : corners(set.uvs.size()) {
@@ -129,7 +130,8 @@ WorkedLayout layout_of(FitResult fitted, const LayoutProblem& problem) {
     const FitPlacement& from = fitted.placements[c];
     const FitItem& item = problem.items[c];
     ChartPlacement& to = layout.placements[c];
-    to = layout.outlines ? outlined(from, options) : boxed(from, options);
+    to = layout.outlines ? outlined_placement(from.box, from.angle, from.offset, options.padding)
+                         : boxed(from, options);
     to.chart = std::uint32_t(c);
     to.page = std::int32_t(from.page);
     const Vec2d wanted = problem.texels_per_unit[c];

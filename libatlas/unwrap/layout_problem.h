@@ -44,6 +44,11 @@ struct LayoutProblem {
   LayoutProblem& operator=(const LayoutProblem&) = delete;
 };
 
+// A chart that lies by its outline: its box with `padding` texels around it, its angle in radians,
+// and where its origin lies. Chart, page and density are left to the caller.
+ChartPlacement outlined_placement(const Rect& box, double angle, Vec2d offset,
+                                  std::int32_t padding);
+
 // Returns the area of placed charts / area of the pages.
 double uv_utilization(const ChartSet& charts, const PageLayout& layout);
 

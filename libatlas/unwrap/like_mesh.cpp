@@ -12,7 +12,6 @@
 
 #include "libatlas/core/is_finite.h"
 #include "libatlas/core/no_index.h"
-#include "libatlas/core/portable_math.h"
 #include "libatlas/pack/beside.h"
 #include "libatlas/unwrap/layout_problem.h"
 #include "libatlas/unwrap/like/lay_beside.h"
@@ -319,17 +318,10 @@ class LikeMesh::Keeper {
 
   void put(std::uint32_t c, const OutlinePlacement& from, double density) {
     ChartPlacement& to = layout_.placements[c];
+    to = outlined_placement(from.box, from.angle, from.offset, options_.padding);
     to.chart = c;
     to.page = std::int32_t(from.page);
-    to.outlined = true;
     to.texels_per_unit = {density, density};
-    to.cosine = portable::cos(from.angle);
-    to.sine = portable::sin(from.angle);
-    to.offset = from.offset;
-    to.x = from.box.x + options_.padding;
-    to.y = from.box.y + options_.padding;
-    to.width = from.box.width - 2 * options_.padding;
-    to.height = from.box.height - 2 * options_.padding;
   }
 
   const LikeMesh& like_;

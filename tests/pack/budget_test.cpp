@@ -103,15 +103,26 @@ TEST(Effort, MoreIsNeverWorse) {
   }
 }
 
+// As many charts as the case says, to be packed by `best`.
+struct ForBest {
+  test::Noise noise{7};
+  test::ChartItems charts;
+  FitSearchOptions options;
+
+  explicit ForBest(const Case& c) : charts(charts_of(c.kind, c.count, noise)), options(c.options) {
+    options.shapes = charts.shapes;
+    options.preset = PackPreset::best;
+  }
+};
+
 TEST(TimeBudget, IsKeptWhateverIsPacked) {
   constexpr double kTooLong = 1.2, kBesides = 0.05;  // seconds
   Context one;
   one.threads = 1;
   for (const Case& c : cases()) {
-    test::Noise noise{7};
-    const test::ChartItems charts = charts_of(c.kind, c.count, noise);
-    FitSearchOptions o = c.options;
-    o.shapes = charts.shapes;
+    const ForBest problem(c);
+    const test::ChartItems& charts = problem.charts;
+    FitSearchOptions o = problem.options;
     o.preset = PackPreset::fast;
     const double begun_fast = cpu_seconds();
     fitted(charts, o, one);
@@ -131,11 +142,8 @@ TEST(TimeBudget, IsKeptWhateverIsPacked) {
 
 TEST(CancelledFit, EndsAtOnce) {
   for (const Case& c : cases()) {
-    test::Noise noise{7};
-    const test::ChartItems charts = charts_of(c.kind, c.count, noise);
-    FitSearchOptions o = c.options;
-    o.shapes = charts.shapes;
-    o.preset = PackPreset::best;
+    const ForBest problem(c);
+    FitSearchOptions o = problem.options;
     o.effort = 1'000'000;
     std::atomic<bool> raised{false};
     double at = 0;
@@ -147,7 +155,7 @@ TEST(CancelledFit, EndsAtOnce) {
       at = cpu_seconds();
       raised = true;
     });
-    const Result<FitResult> fit = pack::search_boxes_or_outlines(charts.items, o, one);
+    const Result<FitResult> fit = pack::search_boxes_or_outlines(problem.charts.items, o, one);
     const double ended = cpu_seconds();
     alarm.join();
     if (fit.ok()) continue;  // all charts are as large as they may be

@@ -64,7 +64,15 @@ def _read(operator, items, **how):
     return [part for _, part in operator.read]
 
 
-class UV_OT_libatlas_unwrap(JobOperator, Operator):
+class _WritesUVs(JobOperator):
+    """Writes what was laid out to the faces that _read() has read."""
+
+    def finish(self, laid):
+        for (item, faces), uvs in zip(self.read, laid.uvs):
+            meshes.write(item, faces, uvs)
+
+
+class UV_OT_libatlas_unwrap(_WritesUVs, Operator):
     """Cut the selected faces into charts, flatten them within a bound on stretch, and pack them on one atlas"""
 
     bl_idname = "uv.libatlas_unwrap"
@@ -116,12 +124,8 @@ class UV_OT_libatlas_unwrap(JobOperator, Operator):
         options = _options(self, *list(UV_OT_libatlas_unwrap.__annotations__))
         return lambda progress: calls.unwrap(faces, options, progress)
 
-    def finish(self, laid):
-        for (item, faces), uvs in zip(self.read, laid.uvs):
-            meshes.write(item, faces, uvs)
 
-
-class UV_OT_libatlas_pack_islands(JobOperator, Operator):
+class UV_OT_libatlas_pack_islands(_WritesUVs, Operator):
     """Move, turn and scale the islands of the selected faces so that they fill the page. Pinned islands stay"""
 
     bl_idname = "uv.libatlas_pack_islands"
@@ -151,10 +155,6 @@ class UV_OT_libatlas_pack_islands(JobOperator, Operator):
         options = _options(self, "page_size", "padding", "pages", "allow_rotation", "preset")
         options["texels_per_uv"] = 0 if self.scale else self.page_size
         return lambda progress: calls.pack(faces, options, progress)
-
-    def finish(self, laid):
-        for (item, faces), uvs in zip(self.read, laid.uvs):
-            meshes.write(item, faces, uvs)
 
 
 class OBJECT_OT_libatlas_lightmap(JobOperator, Operator):

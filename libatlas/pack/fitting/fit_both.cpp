@@ -122,8 +122,7 @@ Result<FitResult> search_boxes_or_outlines(std::span<const FitItem> items,
     return search_fit(items, options, context);
   if (Status s = check_shapes(options.shapes); !s.ok()) return s;
   FitSearchOptions by_outlines = options;  // whose time begins now
-  if (options.preset == PackPreset::best && options.effort == 0)
-    by_outlines.deadline = std::min(options.deadline, wall_seconds() + options.time_budget);
+  by_outlines.deadline = ending(options);
   constexpr double kBoxes = 1.0 / 3;  // share of the progress
   Result<FitResult> boxed =
       search_fit(items, by_boxes, part_of_stage(context, "packing", 0, kBoxes));

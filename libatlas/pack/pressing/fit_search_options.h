@@ -26,6 +26,13 @@ struct FitSearchOptions : FitOptions {
   double deadline = std::numeric_limits<double>::infinity();
 };
 
+// Returns when a search that begins now ends, at its deadline at the latest.
+inline double ending(const FitSearchOptions& options) {
+  const bool timed = options.preset == PackPreset::best && options.effort == 0;
+  return timed ? std::min(options.deadline, wall_seconds() + options.time_budget)
+               : options.deadline;
+}
+
 // Work is counted in words that are examined while charts overlap, about 2 ns each. Placing charts
 // examines words of tables, each of which takes kWordsOfPlacing times as long.
 inline constexpr double kWordsOfPlacing = 4;

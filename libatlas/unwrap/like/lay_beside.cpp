@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
+#include <numeric>
 #include <utility>
 #include <vector>
 
@@ -166,16 +167,23 @@ class Layer {
     return relaxer.settle(elements, corners, region.free, region.uvs) && fits(region);
   }
 
-  // Gives uvs that are not known a place: where the triangles with two known ones put them.
+  // Gives uvs that are not known a place, round by round: where the triangles with two known ones
+  // put them.
   static bool unfold(Region& region) {
     struct Sum {
       glm::dvec2 at{0};
       int count = 0;
     };
     std::vector<Sum> sums(region.uvs.size());
-    for (bool any = true; any;) {
-      any = false;
-      for (const auto& corners : region.corners) {
+    const Buckets corners_at =
+        sort_into_buckets(3 * region.corners.size(), region.uvs.size(),
+                          [&](std::size_t i) { return region.corners[i / 3][i % 3]; });
+    std::vector<std::uint32_t> front(region.corners.size()), found;
+    std::iota(front.begin(), front.end(), 0u);
+    while (!front.empty()) {
+      found.clear();
+      for (const std::uint32_t t : front) {
+        const auto& corners = region.corners[t];
         const auto unknown = std::find_if(corners.begin(), corners.end(),
                                           [&](std::uint32_t v) { return !region.known[v]; });
         if (unknown == corners.end()) continue;
@@ -184,14 +192,16 @@ class Layer {
         if (!region.known[a] || !region.known[b]) continue;
         Sum& sum = sums[*unknown];
         sum.at += unfolded(region, {a, b, *unknown});
-        ++sum.count;
+        if (sum.count++ == 0) found.push_back(*unknown);
       }
-      for (std::uint32_t v = 0; v < sums.size(); ++v) {
-        if (region.known[v] || sums[v].count == 0) continue;
+      front.clear();
+      for (const std::uint32_t v : found) {
         region.uvs[v] = from_glm(sums[v].at / double(sums[v].count));
         region.known[v] = 1;
-        any = true;
+        for (const std::uint32_t corner : corners_at[v]) front.push_back(corner / 3);
       }
+      std::sort(front.begin(), front.end());
+      front.erase(std::unique(front.begin(), front.end()), front.end());
     }
     return std::find(region.known.begin(), region.known.end(), 0) == region.known.end();
   }
