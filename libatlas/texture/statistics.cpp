@@ -96,7 +96,7 @@ struct Collector {
   // Sets what depends on what is visible.
   void view(double area_per_sample) {
     std::vector<std::uint32_t> seen =
-        seen_samples(points, area_per_sample * static_cast<double>(points.size()));
+        seen_samples(points, area_per_sample * static_cast<double>(points.size()), kSeenNeeded);
     std::erase_if(seen, [this](std::uint32_t i) { return peaks[i] <= 0; });
     out.seen = seen.size() >= kSeenNeeded;
     const std::vector<std::uint32_t>& samples = out.seen ? seen : lit;

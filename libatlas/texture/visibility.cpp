@@ -141,7 +141,8 @@ bool look_around(const VoxelGrid& grid, std::mt19937_64& random, Observer& obser
 
 }  // namespace
 
-std::vector<std::uint32_t> seen_samples(std::span<const Vec3f> positions, double area) {
+std::vector<std::uint32_t> seen_samples(std::span<const Vec3f> positions, double area,
+                                        std::size_t needed) {
   std::vector<std::uint32_t> seen;
   if (positions.empty() || !(area > 0)) return seen;
   const VoxelGrid grid(positions, area);
@@ -149,6 +150,7 @@ std::vector<std::uint32_t> seen_samples(std::span<const Vec3f> positions, double
   std::vector<Observer> observers;
   std::vector<double> reach;
   for (int i = 0; i < kPoints; ++i) {
+    if (i == kPoints / 8 && 4 * 8 * kRays * observers.size() < needed) return seen;
     Observer observer;
     for (int k = 0; k < 3; ++k) observer.at[k] = uniform(random) * grid.size(k);
     if (!grid.empty(observer.at) || !look_around(grid, random, observer)) continue;

@@ -17,8 +17,11 @@ namespace atlas {
 // Rays are marched through a grid of voxels of 2.5 sample distances or more. This approximates
 // visibility, needs no ray-tracing structure, and costs the same for any triangle count. A point
 // from which fewer than five rays in eight meet a sample is outside the scene, and is skipped. If
-// all points are skipped, the result is empty. `area` is the surface that the samples represent
-// evenly. The result is deterministic and does not depend on the scale.
-std::vector<std::uint32_t> seen_samples(std::span<const Vec3f> positions, double area);
+// all points are skipped, or so many of the first eighth that far fewer than `needed` samples would
+// be seen, the result is empty: a scene without rooms costs an eighth of the time. `area` is the
+// surface that the samples represent evenly. The result is deterministic and does not depend on the
+// scale.
+std::vector<std::uint32_t> seen_samples(std::span<const Vec3f> positions, double area,
+                                        std::size_t needed);
 
 }  // namespace atlas

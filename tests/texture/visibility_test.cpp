@@ -93,7 +93,7 @@ TEST(Visibility, WhoSeesFarLooksAlongTheLongestLineOfSight) {
   for (const Size& size : {Size{16, 3, 3}, Size{4, 4, 4}, Size{2, 9, 9}}) {
     double area = 0;
     const auto samples = room(size, 1 << 17, area);
-    const std::vector<std::uint32_t> seen = seen_samples(samples, area);
+    const std::vector<std::uint32_t> seen = seen_samples(samples, area, 0);
     const auto across = std::count_if(seen.begin(), seen.end(), [&](std::uint32_t i) {
       return samples[i].x == 0 || samples[i].x == float(size[0]);
     });
@@ -101,6 +101,7 @@ TEST(Visibility, WhoSeesFarLooksAlongTheLongestLineOfSight) {
     // The walls are closed: hardly any point is mistaken for one outside, and hardly any ray passes
     // through.
     EXPECT_GT(seen.size(), 150'000u);
+    EXPECT_EQ(seen_samples(samples, area, 4096), seen);
   }
 }
 
@@ -112,9 +113,11 @@ TEST(Visibility, WhoSeesLittleStandsOutside) {
     samples.push_back(
         {i % 2 ? 10.0f : 0.0f, float(3 * uniform(random)), float(3 * uniform(random))});
   }
-  EXPECT_LT(seen_samples(samples, 18).size(), 4096u);
-  EXPECT_TRUE(seen_samples({}, 1).empty());
-  EXPECT_TRUE(seen_samples(samples, 0).empty());
+  EXPECT_LT(seen_samples(samples, 18, 0).size(), 4096u);
+  EXPECT_TRUE(seen_samples({}, 1, 0).empty());
+  for (Vec3f& p : samples) p.x = 0;
+  EXPECT_TRUE(seen_samples(samples, 9, 4096).empty());
+  EXPECT_TRUE(seen_samples(samples, 0, 0).empty());
 }
 
 }  // namespace
