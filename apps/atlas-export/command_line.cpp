@@ -64,7 +64,8 @@ void add_chart_options(CLI::App& app, ExportCommand& command) {
       ->capture_default_str()
       ->check(within(1 + 1e-6, 1e30, "at least 1.000001"));
   app.add_option("--crease", options.charts.crease_degrees,
-                 "Edges sharper than this are preferred as seams, degrees")
+                 "Bend of an edge, in degrees, from which on a seam along it costs only a quarter; "
+                 "at smaller bends, less in proportion")
       ->capture_default_str()
       ->check(within(1e-6, 180, "above 0, at most 180"));
   add_off_flag(app, "--across-materials", options.charts.split_at_materials,

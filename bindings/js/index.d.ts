@@ -75,7 +75,7 @@ export interface UnwrapOptions extends Callbacks {
   maxStretch?: number;
   /** Most degrees between a chart's axis and its normals; default 0: any. */
   coneDegrees?: number;
-  /** Sharper edges are preferred as seams, 0..180; default 40. */
+  /** Bend from which on a seam costs a quarter, above 0..180; default 60. */
   creaseDegrees?: number;
   /** Wasteful charts are cut; 0: never, below 1; default 0.72. */
   minFill?: number;

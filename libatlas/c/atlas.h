@@ -163,7 +163,7 @@ typedef struct libatlas_unwrap_options {
   size_t size;
   double max_stretch;      // bound over 99.9 % of each chart's area, > 1; default 1.25
   double cone_degrees;     // most degrees between a chart's axis and its normals; default 0: any
-  double crease_degrees;   // sharper edges are preferred as seams, 0..180; default 40
+  double crease_degrees;   // bend from which on a seam costs a quarter, above 0..180; default 60
   double min_fill;         // wasteful charts are cut; 0: never, below 1; default 0.72
   double uv_aspect;        // for keep_uvs: width / height of the page of the given uvs; default 1
   double texels_per_unit;  // times density; default 0: as many as the pages hold

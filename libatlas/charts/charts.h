@@ -44,8 +44,9 @@ struct ChartOptions {
   double cone_degrees = 0;
   // Bound on max(s1, 1/s2) at the chart's area-preserving scale over 99.9 % of its area; > 1.
   double max_stretch = 1.25;
-  // Edges sharper than this are preferred as seams; degrees, above 0, at most 180.
-  double crease_degrees = 40;
+  // A seam along an edge that bends by this angle or more costs a quarter of one on a smooth
+  // surface; at smaller angles less in proportion. Degrees, above 0, at most 180.
+  double crease_degrees = 60;
   bool split_at_materials = true;  // a chart holds triangles of one material only
   // Keep the charts of the given texcoords and their shapes (scaled, turned, unmirrored), whatever
   // they stretch; only what is flipped, overlapping, degenerate, squeezed to a line, missing or

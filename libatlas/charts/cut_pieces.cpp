@@ -1,13 +1,16 @@
 #include "libatlas/charts/cut_pieces.h"
 
 #include <algorithm>
-#include <compare>
+#include <cmath>
 #include <iterator>
 #include <mutex>
 
+#include "libatlas/charts/merging/merge_options.h"
 #include "libatlas/charts/mesh/pieces.h"
+#include "libatlas/charts/seams/refine.h"
 #include "libatlas/charts/segment.h"
 #include "libatlas/core/clock.h"
+#include "libatlas/core/degrees.h"
 #include "libatlas/core/parallel.h"
 #include "libatlas/core/sort_total.h"
 
@@ -34,22 +37,24 @@ int attempts_for(const FlattenInput& mesh) {
   return polygons ? kBestAttempts : 1;
 }
 
-// The cost of a piece's charts; less is better.
-struct Cost {
-  std::size_t charts = 0;
-  double seams = 0;  // length
-  auto operator<=>(const Cost&) const = default;
-};
-
-std::vector<Cost> costs(const Topology& topology, const Partition& partition,
-                        std::span<const FlatChart> charts) {
-  std::vector<Cost> costs(topology.component_count);
-  for (const FlatChart& chart : charts) ++costs[chart.piece(topology)].charts;
+// Returns what each piece's charts cost, as when cells are merged (MergeOptions): their seams, and
+// as much again for each chart as a seam of chart_worth.
+std::vector<double> costs(const FlattenInput& mesh, const Partition& partition,
+                          std::span<const FlatChart> charts) {
+  const Topology& topology = mesh.topology;
+  const MergeOptions worth = merge_options(mesh.options.max_stretch);
+  const double crease_angle = radians(mesh.options.crease_degrees);
+  std::vector<double> costs(topology.component_count), areas(topology.component_count);
   for (std::uint32_t h = 0; h < topology.opposite.size(); ++h) {
     const std::uint32_t o = topology.opposite[h];
+    if (h % 3 == 0) areas[topology.component[h / 3]] += topology.areas[h / 3];
     if (o == kNoIndex || partition.chart[h / 3] == kNoIndex) continue;
     if (partition.chart[h / 3] == partition.chart[o / 3] && !partition.seam(h)) continue;
-    costs[topology.component[h / 3]].seams += 0.5 * edge_length(topology, h);
+    costs[topology.component[h / 3]] += 0.5 * border_weight(topology, h, crease_angle);
+  }
+  for (const FlatChart& chart : charts) {
+    const std::uint32_t p = chart.piece(topology);
+    costs[p] += worth.chart_worth * std::sqrt(areas[p]);
   }
   return costs;
 }
@@ -57,10 +62,10 @@ std::vector<Cost> costs(const Topology& topology, const Partition& partition,
 // The best charts of each piece in several attempts.
 class BestCharts {
  public:
-  explicit BestCharts(const Topology& topology) : topology_(topology) {}
+  explicit BestCharts(const FlattenInput& mesh) : mesh_(mesh), topology_(mesh.topology) {}
 
   void take(const Partition& partition, FlattenResult flat) {
-    const std::vector<Cost> made = costs(topology_, partition, flat.charts);
+    const std::vector<double> made = costs(mesh_, partition, flat.charts);
     const bool first = least_.empty();
     least_.resize(made.size());
     best_.splits.resize(made.size());
@@ -81,9 +86,10 @@ class BestCharts {
   FlattenResult result() && { return std::move(best_); }
 
  private:
+  const FlattenInput& mesh_;
   const Topology& topology_;
   FlattenResult best_;
-  std::vector<Cost> least_;  // one per piece
+  std::vector<double> least_;  // one per piece
 };
 
 // Cuts the whole mesh at once.
@@ -91,7 +97,7 @@ CutCharts cut_mesh(const FlattenInput& mesh, const Context& context) {
   const int attempts = attempts_for(mesh);
   CutCharts out;
   FlattenResult chosen;
-  BestCharts best(mesh.topology);
+  BestCharts best(mesh);
   for (int i = 0; i < attempts; ++i) {
     const double start = own_cpu_seconds();
     Segmentation segmentation = segment(mesh.topology, mesh.options, double(i) / attempts, context);

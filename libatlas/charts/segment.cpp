@@ -44,16 +44,9 @@ void spread_to_triangles(const Cut& cut, std::uint32_t first_label, Segmentation
   }
 }
 
-// The widest band, in rings, within which seams are straightened. The band is as wide as cells are
-// uneven, a third of a cell's width to each side, but wider ones take too long on fine meshes.
-constexpr double kMostRings = 12;
-// The stiffness of seams. In cells of at most kCoarseCell triangles each triangle is a large part
-// of its chart; with more triangles per cell, seams are freer in proportion. With half the
-// stiffness, in bands a quarter wider, seams are 1.4 % shorter for 6 % more L2 - 1 and 9 % more
-// time (97 meshes). Does not apply to ChartPreset::fast: where charts fail as a result, it would
-// take as long as the default.
-constexpr double kCoarseCell = 40, kCoarseStiffness = 0.3;
-
+// Seams are straightened within bands of this share of a cell's width to each side, and at most so
+// many rings of triangles. Wider bands make seams straighter, but more charts fail and are divided.
+constexpr double kBandWidth = 0.5, kFastBandWidth = 0.25, kMostRings = 12;
 // ChartPreset::fast has larger and therefore fewer cells: this takes a twelfth less time for a
 // thirtieth more charts (77 meshes).
 constexpr std::uint32_t kFastTrianglesPerCell = 250, kFastCellsOfSmallMesh = 60;
@@ -154,11 +147,11 @@ class Segmenter {
     if (context_.cancelled()) return {};
     Stopwatch watch(own_cpu_seconds);
     const BorderRules rules{options_.crease_degrees, {axes_, portable::cos(cone_ - 1e-5)}};
-    Slits slits(topology_, {rules, bands_}, result_.partition, result_.frames);
+    Slits slits(topology_, {rules, rings_}, result_.partition, result_.frames);
     slits.close();
     smooth_borders(topology_, rules, result_.partition, result_.frames);
     const std::vector<std::uint32_t> moved =
-        straighten_borders(topology_, {rules, bands_}, result_.partition, context_);
+        straighten_borders(topology_, {rules, rings_}, result_.partition, context_);
     carry_frames(topology_, moved, result_.frames);
     smooth_borders(topology_, rules, result_.partition, result_.frames);
     slits.reopen();
@@ -294,7 +287,7 @@ class Segmenter {
 
   void take(const Cut& made) {
     spread_to_triangles(made, labels_, result_);
-    add_bands(made.cells, made.merged);
+    add_rings(made.cells, made.merged);
     labels_ += static_cast<std::uint32_t>(made.coarse.cells.size());
     const std::vector<Vec3f>& axes = made.merged.chart_axis;
     axes_.insert(axes_.end(), axes.begin(), axes.end());
@@ -339,7 +332,7 @@ class Segmenter {
     result_.timing.merging_cpu += watch.lap();
   }
 
-  void add_bands(const Cells& cells, const MergeResult& merged) {
+  void add_rings(const Cells& cells, const MergeResult& merged) {
     std::vector<std::uint32_t> triangles(cells.count, 0), cell_count(cells.count, 0);
     for (const std::uint32_t chart : merged.chart_of_cell) {
       if (chart != kNoIndex) ++cell_count[chart];  // a cell may have lost all its triangles
@@ -348,20 +341,11 @@ class Segmenter {
       if (k != kNoIndex && merged.chart_of_cell[k] != kNoIndex)
         ++triangles[merged.chart_of_cell[k]];
     }
-    const double planned = triangles_per_cell(topology_, cell_options());
+    const double share = options_.preset == ChartPreset::fast ? kFastBandWidth : kBandWidth;
     for (std::uint32_t k = 0; k < cells.count; ++k) {
-      bands_.push_back(seam_band(double(triangles[k]) / std::max(cell_count[k], 1u), planned));
+      const double width = std::sqrt(double(triangles[k]) / std::max(cell_count[k], 1u));
+      rings_.push_back(static_cast<std::uint8_t>(std::min(share * width, kMostRings)));
     }
-  }
-
-  // Returns the band for the mean number of triangles in a chart's cells, and for the planned
-  // number.
-  SeamBand seam_band(double in_cell, double planned) const {
-    const double fineness = options_.preset == ChartPreset::fast
-                                ? 1
-                                : std::max({1.0, in_cell / kCoarseCell, planned / kCoarseCell});
-    return {static_cast<std::uint8_t>(std::min(std::sqrt(in_cell / 5), kMostRings)),
-            static_cast<float>(kCoarseStiffness / fineness)};
   }
 
   const Topology& topology_;
@@ -370,9 +354,9 @@ class Segmenter {
   const Context& context_;
   double cone_;  // radians
   Segmentation result_;
-  std::vector<SeamBand> bands_;  // by label
-  std::uint32_t labels_ = 0;     // number of labels given so far
-  std::vector<Vec3f> axes_;      // by label; only with a cone limit
+  std::vector<std::uint8_t> rings_;  // by label: the width of the band that its borders move in
+  std::uint32_t labels_ = 0;         // number of labels given so far
+  std::vector<Vec3f> axes_;          // by label; only with a cone limit
 };
 
 }  // namespace

@@ -117,10 +117,7 @@ struct RaggedCharts {
   }
 
   void straighten(std::uint8_t rings, double crease_degrees = 40) {
-    straighten(SeamBand{rings}, crease_degrees);
-  }
-  void straighten(const SeamBand& band, double crease_degrees = 40) {
-    const std::vector<SeamBand> of_chart(64, band);
+    const std::vector<std::uint8_t> of_chart(64, rings);
     straighten_borders(topology, {{crease_degrees, {}}, of_chart}, partition, {});
   }
 };

@@ -118,7 +118,7 @@ struct Slitted : RaggedCharts {
   }
 };
 
-const std::vector<SeamBand> kBands(8, SeamBand{4});
+const std::vector<std::uint8_t> kBands(8, 4);
 
 Slitted tube(int around, int along, double height) {
   Slitted charts(cylinder(around, along, 1, height));

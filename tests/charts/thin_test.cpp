@@ -153,7 +153,7 @@ TEST(Thin, CurvedSurfacesKeepTheirCharts) {
     const ChartSet before = checked_charts(mesh);
     ASSERT_GT(add_caps(mesh, 3), 50u);
     const ChartSet after = checked_charts(mesh);
-    EXPECT_LE(after.charts.size(), before.charts.size() + 2);
+    EXPECT_LE(after.charts.size(), before.charts.size() + 3);
     EXPECT_LE(check_charts(mesh.view(), after).stretch_999, 1.25001);
     EXPECT_LE(after.seam_length, 1.4 * before.seam_length + 1e-9);
   }

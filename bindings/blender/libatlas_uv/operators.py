@@ -88,7 +88,7 @@ class UV_OT_libatlas_unwrap(_WritesUVs, Operator):
     )
     charts: _preset("Charts", "Effort for charts")
     crease_degrees: FloatProperty(
-        name="Crease", description="Sharper edges are preferred as seams; degrees", default=40, min=0, max=180
+        name="Crease", description="Bend of an edge from which on a seam costs only a quarter; degrees", default=60, min=0, max=180
     )
     cone_degrees: FloatProperty(
         name="Cone", description="Most degrees between a chart's axis and its normals; 0: any", default=0, min=0, max=90

@@ -108,7 +108,7 @@ class Absorber {
         most_l2_(largest_l2(input.flatten.options.max_stretch)),
         room_(room_in(input.flatten.options.max_stretch)),
         seam_worth_(merge_options(input.flatten.options.max_stretch).seam_worth),
-        crease_cosine_(cosine_of(input.flatten.options.crease_degrees)),
+        crease_angle_(radians(input.flatten.options.crease_degrees)),
         work_(patience_.work * double(topology_.triangle_count())),
         most_cost_(input.flatten.options.preset == ChartPreset::fast
                        ? kFastUnion * double(all_triangles())
@@ -343,7 +343,7 @@ class Absorber {
   double seam_weight(std::span<const BorderEdge> edges) const {
     double weight = 0;
     for (const BorderEdge& edge : edges)
-      weight += border_weight(topology_, edge.half_edge, crease_cosine_);
+      weight += border_weight(topology_, edge.half_edge, crease_angle_);
     return weight;
   }
 
@@ -378,7 +378,7 @@ class Absorber {
   std::vector<FlatChart>& charts_;
   Patience patience_;
   double most_l2_, room_, seam_worth_;
-  double crease_cosine_;
+  double crease_angle_;
   double work_, most_cost_;  // what is left for all unions, and the most that one may cost
   // One per chart: whether it is tried by itself, also after it has taken in others.
   std::vector<std::uint8_t> candidate_;

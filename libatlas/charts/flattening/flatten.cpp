@@ -20,7 +20,6 @@ namespace {
 // The border between parts of a divided chart is straightened within a band whose width on each
 // side is this share of the smaller part's width.
 constexpr double kPartBand = 0.5;
-constexpr float kPartStiffness = 0.03F;  // 0.3 gives a hundredth more charts (97 meshes)
 
 // Memory used for a chart of more triangles is freed before a chart less than half as large, since
 // the flat charts need memory by then.
@@ -173,17 +172,17 @@ class Flattener {
   void straighten_parts(const Context& context) {
     const std::vector<std::uint32_t> parts = std::exchange(parts_, {});
     if (parts.empty() || input_.options.cone_degrees > 0) return;
-    std::vector<SeamBand> bands(charts_.size());
+    std::vector<std::uint8_t> rings(charts_.size());
     std::vector<std::uint32_t> triangles;
     for (const std::uint32_t part : parts) {
       std::vector<std::uint32_t>& own = charts_[part].triangles;
-      const double rings = kPartBand * std::sqrt(static_cast<double>(own.size()));
-      bands[part] = {static_cast<std::uint8_t>(std::min(255.0, rings)), kPartStiffness};
+      const double width = kPartBand * std::sqrt(static_cast<double>(own.size()));
+      rings[part] = static_cast<std::uint8_t>(std::min(255.0, width));
       triangles.insert(triangles.end(), own.begin(), own.end());
       own.clear();
     }
     std::sort(triangles.begin(), triangles.end());
-    const StraightenOptions options{{input_.options.crease_degrees, {}}, bands, triangles};
+    const StraightenOptions options{{input_.options.crease_degrees, {}}, rings, triangles};
     carry_frames(input_.topology, straighten_borders(input_.topology, options, partition_, context),
                  input_.frames);
     for (const std::uint32_t t : triangles) charts_[partition_.chart[t]].triangles.push_back(t);

@@ -34,7 +34,7 @@ class Reliever {
         partition_(partition),
         charts_(charts),
         seam_worth_(merge_options(input.options.max_stretch).seam_worth),
-        crease_cosine_(cosine_of(input.options.crease_degrees)),
+        crease_angle_(radians(input.options.crease_degrees)),
         chart_area_(charts.size(), 0),
         piece_area_(topology_.component_count, 0),
         piece_triangles_(topology_.component_count, 0) {}
@@ -142,7 +142,7 @@ class Reliever {
   double price_of(const Dart& dart, double piece_area) const {
     double weight = 0;
     for (std::size_t i = 0; i < dart.size(); i += 2)
-      weight += border_weight(topology_, dart[i], crease_cosine_);
+      weight += border_weight(topology_, dart[i], crease_angle_);
     return seam_worth_ * weight * std::sqrt(piece_area);
   }
 
@@ -150,7 +150,7 @@ class Reliever {
   const Topology& topology_;
   Partition& partition_;
   std::vector<FlatChart>& charts_;
-  double seam_worth_, crease_cosine_;
+  double seam_worth_, crease_angle_;
   std::vector<double> chart_area_, piece_area_, piece_triangles_;
 };
 

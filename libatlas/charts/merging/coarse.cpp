@@ -8,6 +8,7 @@
 #include "libatlas/charts/cells/tips.h"
 #include "libatlas/charts/merging/fan_centre.h"
 #include "libatlas/charts/merging/unroll.h"
+#include "libatlas/charts/seams/refine.h"
 #include "libatlas/core/degrees.h"
 #include "libatlas/core/glm_bridge.h"
 
@@ -27,7 +28,7 @@ class CoarseBuilder {
       : topology_(topology),
         cells_(cells),
         rims_(std::move(rims)),
-        crease_cosine_(cosine_of(crease_degrees)) {}
+        crease_angle_(radians(crease_degrees)) {}
 
   CoarseMesh run() {
     mesh_.cells.resize(cells_.count);
@@ -207,10 +208,7 @@ class CoarseBuilder {
       arc.length += length;
       mesh_.rim_half_edges.push_back(h);
       mesh_.rim_arcs.push_back(static_cast<std::uint32_t>(mesh_.arcs.size()));
-      if (o != kNoIndex && glm::dot(to_dvec(topology_.calm_normal(h / 3)),
-                                    to_dvec(topology_.calm_normal(o / 3))) < crease_cosine_) {
-        arc.crease += length;
-      }
+      arc.weight += o == kNoIndex ? length : border_weight(topology_, h, crease_angle_);
     }
     arc_at_[head] = static_cast<std::uint32_t>(mesh_.arcs.size());
     mesh_.slot_arc.push_back(arc_at_[head]);
@@ -220,7 +218,7 @@ class CoarseBuilder {
   const Topology& topology_;
   const Cells& cells_;
   Rims rims_;
-  double crease_cosine_;
+  double crease_angle_;
   CoarseMesh mesh_;
   std::vector<std::uint8_t> corner_, noisy_;
   std::vector<std::uint32_t> arc_at_;  // by the half-edge that begins side 0

@@ -20,7 +20,7 @@ struct CoarseArc {
   std::array<std::uint32_t, 2> slot{kNoIndex, kNoIndex};
   std::array<std::uint32_t, 2> cell{kNoIndex, kNoIndex};
   double length = 0;  // along the mesh's edges
-  double crease = 0;  // the length of its edges sharper than the crease angle
+  double weight = 0;  // what it costs as a seam (border_weight)
 };
 
 struct CoarseCell {

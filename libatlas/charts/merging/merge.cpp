@@ -19,16 +19,14 @@
 namespace atlas {
 namespace {
 
-// A seam along a crease is hidden, so removing it is worth less by this share.
-constexpr double kHiddenSeam = 0.75;
 // Under a cone limit charts are small and their outlines hardly matter; the number of charts does.
 constexpr double kConeWeight = 1;
 constexpr double kConeFill = 0.4;  // of both convex hull and rectangle
 
 struct Border {
   std::uint32_t other;
-  double length, crease;
-  // Compares all members: creases would otherwise be added in any order where lengths are equal.
+  double length, weight;
+  // Compares all members: weights would otherwise be added in any order where lengths are equal.
   auto operator<=>(const Border&) const = default;
 };
 
@@ -136,14 +134,14 @@ class Merger {
       const std::uint32_t c0 = chart_at(arc, 0), c1 = chart_at(arc, 1);
       const std::uint32_t other = c0 == a ? c1 : c0;
       if (other == kNoIndex || other == a) continue;
-      borders_.push_back({other, mesh_.arcs[arc].length, mesh_.arcs[arc].crease});
+      borders_.push_back({other, mesh_.arcs[arc].length, mesh_.arcs[arc].weight});
     }
     std::sort(borders_.begin(), borders_.end());
     std::size_t kept = 0;
     for (std::size_t i = 0; i < borders_.size(); ++i) {
       if (kept > 0 && borders_[kept - 1].other == borders_[i].other) {
         borders_[kept - 1].length += borders_[i].length;
-        borders_[kept - 1].crease += borders_[i].crease;
+        borders_[kept - 1].weight += borders_[i].weight;
       } else {
         borders_[kept++] = borders_[i];
       }
@@ -178,7 +176,7 @@ class Merger {
     const double perimeter = p.perimeter + q.perimeter - 2 * border.length;
     const double compact = perimeter / std::sqrt(4 * std::numbers::pi * area);
     return spread + options_.compactness_weight * compact +
-           (border.length > 0 ? options_.crease_weight * border.crease / border.length : 0);
+           (border.length > 0 ? options_.crease_weight * (1 - border.weight / border.length) : 0);
   }
 
   // Whether all normals lie in one cone within the limit. Stores its axis in axis_.
@@ -265,17 +263,16 @@ class Merger {
   // Returns what the two charts may be as one that is joined along glue_. The merger may cost as
   // much stretch as the seam that it saves is worth.
   TrialLimits limits_for(std::uint32_t a, std::uint32_t b) {
-    double length = 0;
-    for (const std::uint32_t arc : glue_)
-      length += mesh_.arcs[arc].length - kHiddenSeam * mesh_.arcs[arc].crease;
-    if (relaxed_) length += options_.chart_worth * std::sqrt(piece_area_);
+    double seam = 0;
+    for (const std::uint32_t arc : glue_) seam += mesh_.arcs[arc].weight;
+    if (relaxed_) seam += options_.chart_worth * std::sqrt(piece_area_);
     const CoarseChart &p = chart(a), &q = chart(b);
-    const double worth = options_.seam_worth * length * std::sqrt(piece_area_);
+    const double worth = options_.seam_worth * seam * std::sqrt(piece_area_);
     const double stretch = std::sqrt(1 + (p.energy + q.energy + worth) / (p.area + q.area));
     TrialLimits limits = options_.limits;
     limits.stretch_l2 = std::min(limits.stretch_l2, stretch);
     limits.high_area =
-        p.high_area + q.high_area + options_.tail_worth * length * std::sqrt(piece_area_);
+        p.high_area + q.high_area + options_.tail_worth * seam * std::sqrt(piece_area_);
     if (relaxed_) {
       limits.solidity = options_.small_solidity;
       limits.fill = options_.small_fill;

@@ -13,10 +13,10 @@ struct MergeOptions {
   const ExtremeNormals* cell_normals = nullptr;  // needed with a cone limit
   // Weights in the cost that orders mergers, beside the spread of the normals: of a long outline,
   // and of creases in between.
-  double compactness_weight = 0.15, crease_weight = 0.15;
-  // What a unit of seam length is worth: in area times (L2 stretch squared - 1), and in area
-  // stretched beyond TrialLimits::stretch_high.
-  double seam_worth = 1.0 / 800, tail_worth = 0.002;
+  double compactness_weight = 0.15, crease_weight = 0.2;
+  // What a unit of seam (border_weight) is worth: in area times (L2 stretch squared - 1), and in
+  // area stretched beyond TrialLimits::stretch_high.
+  double seam_worth = 1.0 / 320, tail_worth = 0.005;
   // In a second pass, charts below this share of the area may fill less of their hull and
   // rectangle. Removing one of them is worth as much as this length of seam.
   double small_share = 0.01, small_solidity = 0.6, small_fill = 0.5, chart_worth = 0.3;

@@ -16,8 +16,8 @@ constexpr double kSteps = 256;  // the length of a mean edge in integer costs
 
 }  // namespace
 
-BandPaths::BandPaths(const Topology& topology, const Partition& partition, double crease_cosine)
-    : topology_(topology), fans_(topology, partition), crease_cosine_(crease_cosine) {}
+BandPaths::BandPaths(const Topology& topology, const Partition& partition, double crease_angle)
+    : topology_(topology), fans_(topology, partition), crease_angle_(crease_angle) {}
 
 BandPaths::Path BandPaths::beside(const Path& path, const std::pair<Ends, Ends>& ends,
                                   const Band& band) {
@@ -102,7 +102,7 @@ BandPaths::Path BandPaths::find(const Ends& starts, const Ends& goals, double st
       const std::uint32_t w = fans_.to(g);
       if (!fans_.linked(g) || level_[w] < 0 || topology_.inner(g)) return;
       const double away = 0.5 * stiffness * (level_[v] + level_[w]) * edge_length(topology_, g);
-      const double cost = border_weight(topology_, g, crease_cosine_) + away;
+      const double cost = border_weight(topology_, g, crease_angle_) + away;
       const double next = so_far + std::round(cost / unit_);
       if (next >= distance_[w]) return;
       distance_[w] = next;

@@ -16,8 +16,8 @@ class BandPaths {
   using Path = std::vector<std::uint32_t>;  // consecutive half-edges
   using Ends = std::vector<std::uint32_t>;
 
-  // An edge costs border_weight(), with this `crease_cosine`.
-  BandPaths(const Topology& topology, const Partition& partition, double crease_cosine);
+  // An edge costs border_weight(), with this `crease_angle`.
+  BandPaths(const Topology& topology, const Partition& partition, double crease_angle);
 
   struct Band {
     // How many edges the new path may lie away from the given one.
@@ -43,7 +43,7 @@ class BandPaths {
 
   const Topology& topology_;
   ChartFans fans_;
-  double crease_cosine_, unit_ = 1;
+  double crease_angle_, unit_ = 1;
   // One per vertex of the current band.
   std::vector<double> distance_;
   std::vector<std::uint32_t> through_, out_;  // half-edges: by which a path arrives; one that

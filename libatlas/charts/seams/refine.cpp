@@ -6,11 +6,12 @@
 #include "libatlas/charts/mesh/chart_fans.h"
 #include "libatlas/core/degrees.h"
 #include "libatlas/core/glm_bridge.h"
+#include "libatlas/core/portable_math.h"
 
 namespace atlas {
 namespace {
 
-constexpr double kCreaseWeight = 0.25;
+constexpr double kHidden = 0.75;      // the share of a seam's cost that a crease hides
 constexpr double kInnerWeight = 1e3;  // of edges inside polygons
 
 class Smoother {
@@ -20,7 +21,7 @@ class Smoother {
         cone_(rules.cone),
         partition_(partition),
         frames_(frames),
-        crease_cosine_(cosine_of(rules.crease_degrees)) {}
+        crease_angle_(radians(rules.crease_degrees)) {}
 
   void run() {
     const auto n = static_cast<std::uint32_t>(topology_.triangle_count());
@@ -57,7 +58,7 @@ class Smoother {
       const std::uint32_t h = 3 * t + c, o = topology_.opposite[h];
       labels[c] = o == kNoIndex || partition_.seam(h) ? kNoIndex : partition_.chart[o / 3];
       if (labels[c] == kNoIndex) continue;
-      weights[c] = border_weight(topology_, h, crease_cosine_);
+      weights[c] = border_weight(topology_, h, crease_angle_);
       if (labels[c] == own) kept += weights[c];
     }
     int best = -1;
@@ -91,20 +92,21 @@ class Smoother {
   const ConeLimit& cone_;
   Partition& partition_;
   Frames& frames_;
-  double crease_cosine_;
+  double crease_angle_;
   std::vector<std::uint8_t> queued_;
   std::vector<std::uint32_t> next_;
 };
 
 }  // namespace
 
-double border_weight(const Topology& topology, std::uint32_t h, double crease_cosine) {
+double border_weight(const Topology& topology, std::uint32_t h, double crease_angle) {
   const std::uint32_t o = topology.opposite[h];
   const double length = edge_length(topology, h);
   if (topology.inner(h)) return kInnerWeight * length;
   const double cosine =
       glm::dot(to_dvec(topology.calm_normal(h / 3)), to_dvec(topology.calm_normal(o / 3)));
-  return cosine < crease_cosine ? kCreaseWeight * length : length;
+  const double bend = portable::acos(std::clamp(cosine, -1.0, 1.0));
+  return length * (1 - kHidden * std::min(1.0, bend / crease_angle));
 }
 
 bool ConeLimit::excludes(const Vec3f& normal, std::uint32_t chart) const {

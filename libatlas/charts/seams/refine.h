@@ -18,9 +18,10 @@ void move_triangle(const Topology& topology, std::uint32_t h, Partition& partiti
 // Whether the chart of t stays connected without t, judged from the triangles around t's corners.
 bool removable(const Topology& topology, const Partition& partition, std::uint32_t t);
 
-// Returns what a linked edge costs in a border: its length, or a quarter of it if the fold is
-// sharper than the crease angle; many times as much inside a polygon.
-double border_weight(const Topology& topology, std::uint32_t half_edge, double crease_cosine);
+// Returns what a linked edge costs in a seam: its length, less in proportion to its bend, down to a
+// quarter at `crease_angle` (radians) and beyond, where a seam does not show; many times as much
+// inside a polygon. All steps that make, move or remove seams compare them by this.
+double border_weight(const Topology& topology, std::uint32_t half_edge, double crease_angle);
 
 // A limit on charts' normals. No limit if `axes` is empty.
 struct ConeLimit {
@@ -31,7 +32,7 @@ struct ConeLimit {
 };
 
 struct BorderRules {
-  double crease_degrees = 40;  // sharper edges count a quarter of their length
+  double crease_degrees = 60;  // of border_weight()
   ConeLimit cone;
 };
 

@@ -36,12 +36,12 @@ class Slits::Straightener {
   Straightener(const Topology& topology, const StraightenOptions& options, Partition& partition,
                Frames& frames)
       : topology_(topology),
-        bands_(options.bands),
+        rings_(options.rings),
         partition_(partition),
         frames_(frames),
-        crease_cosine_(cosine_of(options.rules.crease_degrees)),
+        crease_angle_(radians(options.rules.crease_degrees)),
         fans_(topology, partition),
-        paths_(topology, partition, crease_cosine_) {}
+        paths_(topology, partition, crease_angle_) {}
 
   void close() {
     list_paths();
@@ -58,7 +58,7 @@ class Slits::Straightener {
     }
     for (Slit& slit : slits_) {
       if (slit.path.empty()) continue;
-      const int rings = kReach * bands_[slit.chart].rings;
+      const int rings = kReach * rings_[slit.chart];
       if (slit.free_end) draw_on(next_half_edge(slit.path.back()), rings);
       if (slit.free_start) draw_on(slit.path.front(), rings);
     }
@@ -68,7 +68,7 @@ class Slits::Straightener {
     list_paths();
     for (Slit& slit : slits_) {
       const bool tube = is_tube(slit);
-      const BandPaths::Band band{bands_[slit.chart].rings, tube ? 0 : kStiffness};
+      const BandPaths::Band band{rings_[slit.chart], tube ? 0 : kStiffness};
       const int rounds = band.rings == 0 ? 0 : tube ? kTubeRounds : kRounds;
       for (int round = 0; round < rounds && shorten(slit.path, band); ++round) {
       }
@@ -84,7 +84,7 @@ class Slits::Straightener {
 
   // Whether the slit leads from border to border.
   bool is_tube(const Slit& slit) const {
-    return slit.free_start && slit.free_end && bands_[slit.chart].rings >= kWideBand;
+    return slit.free_start && slit.free_end && rings_[slit.chart] >= kWideBand;
   }
 
   // Lists the maximal paths of seams. No path passes a vertex where others end.
@@ -163,7 +163,7 @@ class Slits::Straightener {
     }
   }
 
-  double weight(std::uint32_t h) const { return border_weight(topology_, h, crease_cosine_); }
+  double weight(std::uint32_t h) const { return border_weight(topology_, h, crease_angle_); }
   double cost(const Path& path) const {
     double sum = 0;
     for (const std::uint32_t h : path) sum += weight(h);
@@ -328,10 +328,10 @@ class Slits::Straightener {
   }
 
   const Topology& topology_;
-  std::span<const SeamBand> bands_;
+  std::span<const std::uint8_t> rings_;
   Partition& partition_;
   Frames& frames_;
-  double crease_cosine_;
+  double crease_angle_;
   ChartFans fans_;
   BandPaths paths_;
   std::vector<std::uint8_t> in_;  // one per triangle: which side it is on; 0: none

@@ -22,7 +22,7 @@ class Slits {
   // Closes slits from border to border, in charts whose bands have at least three rings.
   void close();
   void reopen();  // opens those again
-  // Replaces each slit by a shorter path (creases count a quarter) within `rings` edges of it, a
+  // Replaces each slit by a cheaper path (border_weight) within `rings` edges of it, a
   // few times, as long as that saves enough. Ends on the chart's border move along it; other ends
   // stay. The triangles between both paths change banks, and their frames turn accordingly. Slits
   // that topology does not allow to move stay as they are.

@@ -23,7 +23,7 @@ class Straightener {
 
   std::vector<std::uint32_t> run(const Context& context) {
     std::vector<std::uint32_t> places(topology_.triangle_count(), kNoIndex);
-    const SharedBands shared{topology_, options_.rules, options_.bands, partition_, places};
+    const SharedBands shared{topology_, options_.rules, options_.rings, partition_, places};
     std::vector<std::vector<std::uint32_t>> moved(pairs_.size());
     Pool<PairScratch> pool;
     Context here = context;
@@ -56,7 +56,7 @@ class Straightener {
       if (o == kNoIndex || o < h) continue;
       const std::uint32_t a = partition_.chart[h / 3], b = partition_.chart[o / 3];
       if (a == b || a == kNoIndex || b == kNoIndex) continue;
-      if (options_.bands[a].rings == 0 || options_.bands[b].rings == 0) continue;
+      if (options_.rings[a] == 0 || options_.rings[b] == 0) continue;
       borders.push_back({{std::min(a, b), std::max(a, b)}, h});
     }
     std::sort(borders.begin(), borders.end());

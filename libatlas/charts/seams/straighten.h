@@ -10,23 +10,16 @@
 
 namespace atlas {
 
-// How far the borders of a chart may move.
-struct SeamBand {
-  std::uint8_t rings = 0;  // triangles to each side; 0: the borders stay
-  // A triangle that changes sides must shorten the border by this share of its own size. With a
-  // smaller share, borders are shorter and charts stretch more.
-  float stiffness = 0.3F;
-};
-
 struct StraightenOptions {
   BorderRules rules = {};
-  std::span<const SeamBand> bands = {};  // one per chart
+  // One per chart: how many triangles to each side its borders may move; 0: they stay.
+  std::span<const std::uint8_t> rings = {};
   // All triangles of the charts with rings; empty: those of all charts.
   std::span<const std::uint32_t> triangles{};
 };
 
-// Replaces the border between each two charts by the shortest one (creases count a quarter) within
-// the narrower and stiffer of their two bands, found as a minimum cut of the dual graph (the idea:
+// Replaces the border between each two charts by the cheapest one (border_weight) within the
+// narrower of their two bands, found as a minimum cut of the dual graph (the idea:
 // Katz and Tal 2003). This shortens borders that moves of single triangles cannot, such as the
 // steps of a staircase. A border stays as it is where a chart would come apart, close to a ring or
 // leave its cone. Borders that share no chart are straightened in parallel. Returns the half-edges

@@ -32,10 +32,10 @@ class PairStraightener {
   PairStraightener(const SharedBands& shared, const BorderPair& pair, PairScratch& scratch)
       : topology_(shared.topology),
         rules_(shared.rules),
-        bands_(shared.bands),
+        rings_(shared.rings),
         partition_(shared.partition),
         places_(shared.places),
-        crease_cosine_(cosine_of(shared.rules.crease_degrees)),
+        crease_angle_(radians(shared.rules.crease_degrees)),
         charts_(pair.charts),
         border_(pair.border),
         band_(scratch.band),
@@ -45,7 +45,7 @@ class PairStraightener {
 
   // Where a cut in the whole band would change too much, a cut in a narrower band may not.
   std::vector<std::uint32_t> run() {
-    int rings = std::min(bands_[charts_[0]].rings, bands_[charts_[1]].rings);
+    int rings = std::min(rings_[charts_[0]], rings_[charts_[1]]);
     do {
       refused_ = false;
       find_band(rings);
@@ -204,13 +204,11 @@ class PairStraightener {
     const double unit = mean / (last_ - first_) / kCutSteps;
     if (!(unit > 0)) return false;
     cut_.reset(last_ - first_);
-    const double stiffness = std::max(bands_[charts_[0]].stiffness, bands_[charts_[1]].stiffness);
     bool anchored[2] = {false, false};
     for (std::uint32_t i = first_; i < last_; ++i) {
       const std::uint32_t t = band_[i], own = side(t);
       for (std::uint32_t h = 3 * t; h < 3 * t + 3; ++h) add_edge(h, unit, anchored);
-      const double size = std::sqrt(static_cast<double>(topology_.areas[t]));
-      cut_.tie(i - first_, own, steps(stiffness * size / unit));
+      cut_.tie(i - first_, own, 1);  // of equal borders, the one that moves the fewest triangles
       if (rules_.cone.excludes(topology_.normals[t], charts_[1 - own]))
         cut_.tie(i - first_, own, MinCut::kForever);
     }
@@ -224,7 +222,7 @@ class PairStraightener {
     if (within && o < h) return;  // added once for both directions
     const std::int32_t w = topology_.inner(h)
                                ? MinCut::kForever
-                               : steps(border_weight(topology_, h, crease_cosine_) / unit);
+                               : steps(border_weight(topology_, h, crease_angle_) / unit);
     if (within) {
       cut_.set_edge({i, h % 3}, {places_[o / 3] - first_, o % 3}, w);
     } else if (const std::uint32_t there = side(o / 3); there < 2) {
@@ -343,10 +341,10 @@ class PairStraightener {
 
   const Topology& topology_;
   const BorderRules& rules_;
-  std::span<const SeamBand> bands_;
+  std::span<const std::uint8_t> rings_;
   Partition& partition_;
   std::span<std::uint32_t> places_;
-  double crease_cosine_;
+  double crease_angle_;
   std::array<std::uint32_t, 2> charts_;
   std::span<const std::uint32_t> border_;
   std::vector<std::uint32_t>&band_, &list_, &fans_;

@@ -16,7 +16,7 @@ namespace atlas {
 struct SharedBands {
   const Topology& topology;
   const BorderRules& rules;
-  std::span<const SeamBand> bands;  // one per chart
+  std::span<const std::uint8_t> rings;  // one per chart
   Partition& partition;
   std::span<std::uint32_t> places;  // one per triangle: its index in the band of its pair, or
                                     // kNoIndex

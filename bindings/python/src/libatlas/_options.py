@@ -26,7 +26,7 @@ class UnwrapOptions(TypedDict, total=False):
 
     max_stretch: float  #: bound over 99.9 % of each chart's area, > 1; default 1.25
     cone_degrees: float  #: most degrees between a chart's axis and its normals; default 0: any
-    crease_degrees: float  #: sharper edges are preferred as seams, 0..180; default 40
+    crease_degrees: float  #: bend from which on a seam costs a quarter, above 0..180; default 60
     min_fill: float  #: wasteful charts are cut; 0: never, below 1; default 0.72
     uv_aspect: float  #: for keep_uvs: width / height of the page of the given uvs; default 1
     texels_per_unit: float  #: times density; default 0: as many as the pages hold
