@@ -128,7 +128,7 @@ class Atlas:
             options: those of `UnwrapOptions`.
 
         Raises:
-            InputError: there is no mesh.
+            InputError: there is no mesh, or something of `like` is not usable.
             OptionError: an option is out of range.
             NoSolutionError: there are more charts than the pages hold texels for.
             TypeError: there is no such option, or it has the wrong type.
@@ -138,7 +138,7 @@ class Atlas:
         _options.fill(c, dict(options), "unwrap")
         handle = Handle("unwrapped")
         with self._lock:
-            context.run("unwrap", self._handle.pointer, c, handle.out, keep=(self, handle))
+            context.run("unwrap", self._handle.pointer, c, handle.out, keep=(self, handle, options))
         return UnwrappedAtlas(handle, self)
 
 
