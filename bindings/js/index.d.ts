@@ -45,6 +45,8 @@ export interface Mesh {
   materials?: Numbers;
   /** 1 a corner: not 0 if the edge from it to the next corner of its face is a seam. */
   seams?: Numbers;
+  /** 1 a vertex, at least 0: a seam along an edge counts its length times the mean of its ends' weights; default 1. */
+  seamWeights?: Numbers;
   /** 1 a face, times density. */
   triangleDensity?: Numbers;
   /** Linear density of texels relative to other meshes, > 0; default 1. */

@@ -126,6 +126,9 @@ typedef struct libatlas_mesh {
   // enclose holes that are joined to the outline by an edge there and back.
   const uint32_t* polygon_sizes;
   size_t polygon_count;
+  // 1 a position, at least 0 and finite: a seam along an edge counts its length times the mean of
+  // its ends' weights, so that seams keep away from high ones. Null: all are 1.
+  const float* seam_weights;
 } libatlas_mesh;
 LIBATLAS_API libatlas_status libatlas_mesh_init(libatlas_mesh* mesh, size_t size);
 

@@ -49,7 +49,8 @@ std::vector<Cost> costs(const Topology& topology, const Partition& partition,
     const std::uint32_t o = topology.opposite[h];
     if (o == kNoIndex || partition.chart[h / 3] == kNoIndex) continue;
     if (partition.chart[h / 3] == partition.chart[o / 3] && !partition.seam(h)) continue;
-    costs[topology.component[h / 3]].seams += 0.5 * edge_length(topology, h);
+    costs[topology.component[h / 3]].seams +=
+        0.5 * topology.seam_weight(h) * edge_length(topology, h);
   }
   return costs;
 }

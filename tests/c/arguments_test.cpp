@@ -81,6 +81,7 @@ class RandomArguments : public testing::Test {
     if (!often()) m.materials = materials_.data();
     if (!often()) m.seams = seams_.data();
     if (!often()) m.triangle_density = densities_.data();
+    if (!often()) m.seam_weights = densities_.data();
     m.density = float(number(1));
     if (!often()) {
       // Sizes that add up to the indices, but for a while.

@@ -149,6 +149,7 @@ export function tightMesh(mesh, number = 0) {
     materials: numbers(Uint32Array, mesh.materials, 1, name("materials")),
     seams: numbers(Uint8Array, mesh.seams, 1, name("seams")),
     triangleDensity: floats("triangleDensity", 1),
+    seamWeights: floats("seamWeights", 1),
     polygonSizes: numbers(Uint32Array, mesh.polygonSizes, 1, name("polygonSizes")),
     instances: floats("instances", 1),
     values: floats("values", 3),
@@ -168,7 +169,7 @@ function checkLengths(mesh, name) {
   const corners = mesh.indices.length;
   const faces = mesh.polygonSizes?.length ?? Math.floor(corners / 3);
   const positions = mesh.positions.length / 3;
-  const wanted = { normals: 3 * positions, values: 3 * positions, materials: faces, seams: corners, triangleDensity: faces, texcoordIndices: corners };
+  const wanted = { normals: 3 * positions, values: 3 * positions, materials: faces, seams: corners, seamWeights: positions, triangleDensity: faces, texcoordIndices: corners };
   if (!mesh.texcoordIndices) wanted.texcoords = 2 * positions;
   for (const [array, length] of Object.entries(wanted)) {
     if (mesh[array] && mesh[array].length !== length) {
@@ -190,7 +191,7 @@ function meshStruct(call, mesh) {
     normals: call.put(mesh.normals),
     texcoords: call.put(mesh.texcoords), texcoord_count: (mesh.texcoords?.length ?? 0) / 2,
     texcoord_indices: call.put(mesh.texcoordIndices),
-    materials: call.put(mesh.materials), seams: call.put(mesh.seams),
+    materials: call.put(mesh.materials), seams: call.put(mesh.seams), seam_weights: call.put(mesh.seamWeights),
     triangle_density: call.put(mesh.triangleDensity), density: mesh.density,
     polygon_sizes: call.put(mesh.polygonSizes), polygon_count: mesh.polygonSizes?.length ?? 0,
   });

@@ -22,7 +22,7 @@ export const structs = {
   mesh: struct(`size size; pointer positions; size position_count position_stride; pointer indices;
     size index_count index_bytes; pointer normals; size normal_stride; pointer texcoords;
     size texcoord_count texcoord_stride; pointer texcoord_indices materials seams triangle_density; f32 density;
-    pointer polygon_sizes; size polygon_count`),
+    pointer polygon_sizes; size polygon_count; pointer seam_weights`),
   unwrap_options: struct(`size size; f64 max_stretch cone_degrees crease_degrees min_fill uv_aspect texels_per_unit;
     u32 pages; i32 page_size padding mip_levels alignment charts packing split_at_materials keep_uvs allow_rotation
     square part_gaps; pointer like`),

@@ -204,12 +204,14 @@ class CoarseBuilder {
     for (std::uint32_t i = 0; i < count; ++i) {
       const std::uint32_t h = at(i), o = topology_.opposite[h];
       const double length = edge_length(topology_, h);
+      const double weighted = topology_.seam_weight(h) * length;
       arc.length += length;
+      arc.weighted += weighted;
       mesh_.rim_half_edges.push_back(h);
       mesh_.rim_arcs.push_back(static_cast<std::uint32_t>(mesh_.arcs.size()));
       if (o != kNoIndex && glm::dot(to_dvec(topology_.calm_normal(h / 3)),
                                     to_dvec(topology_.calm_normal(o / 3))) < crease_cosine_) {
-        arc.crease += length;
+        arc.crease += weighted;
       }
     }
     arc_at_[head] = static_cast<std::uint32_t>(mesh_.arcs.size());

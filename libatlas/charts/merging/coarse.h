@@ -20,7 +20,8 @@ struct CoarseArc {
   std::array<std::uint32_t, 2> slot{kNoIndex, kNoIndex};
   std::array<std::uint32_t, 2> cell{kNoIndex, kNoIndex};
   double length = 0;  // along the mesh's edges
-  double crease = 0;  // the length of its edges sharper than the crease angle
+  // The same times Topology::seam_weight(); and of that, the edges sharper than the crease angle.
+  double weighted = 0, crease = 0;
 };
 
 struct CoarseCell {

@@ -27,7 +27,7 @@ constexpr double kConeFill = 0.4;  // of both convex hull and rectangle
 
 struct Border {
   std::uint32_t other;
-  double length, crease;
+  double length, weighted, crease;
   // Compares all members: creases would otherwise be added in any order where lengths are equal.
   auto operator<=>(const Border&) const = default;
 };
@@ -136,13 +136,15 @@ class Merger {
       const std::uint32_t c0 = chart_at(arc, 0), c1 = chart_at(arc, 1);
       const std::uint32_t other = c0 == a ? c1 : c0;
       if (other == kNoIndex || other == a) continue;
-      borders_.push_back({other, mesh_.arcs[arc].length, mesh_.arcs[arc].crease});
+      const CoarseArc& own = mesh_.arcs[arc];
+      borders_.push_back({other, own.length, own.weighted, own.crease});
     }
     std::sort(borders_.begin(), borders_.end());
     std::size_t kept = 0;
     for (std::size_t i = 0; i < borders_.size(); ++i) {
       if (kept > 0 && borders_[kept - 1].other == borders_[i].other) {
         borders_[kept - 1].length += borders_[i].length;
+        borders_[kept - 1].weighted += borders_[i].weighted;
         borders_[kept - 1].crease += borders_[i].crease;
       } else {
         borders_[kept++] = borders_[i];
@@ -177,8 +179,11 @@ class Merger {
                                             : std::max(0.0, smallest_eigenvalue(m));
     const double perimeter = p.perimeter + q.perimeter - 2 * border.length;
     const double compact = perimeter / std::sqrt(4 * std::numbers::pi * area);
+    // A seam that the user's weights make dear by as much as a crease makes one cheap comes as much
+    // earlier.
+    const double hidden = border.crease - (border.weighted - border.length) / kHiddenSeam;
     return spread + options_.compactness_weight * compact +
-           (border.length > 0 ? options_.crease_weight * border.crease / border.length : 0);
+           (border.length > 0 ? options_.crease_weight * hidden / border.length : 0);
   }
 
   // Whether all normals lie in one cone within the limit. Stores its axis in axis_.
@@ -267,7 +272,7 @@ class Merger {
   TrialLimits limits_for(std::uint32_t a, std::uint32_t b) {
     double length = 0;
     for (const std::uint32_t arc : glue_)
-      length += mesh_.arcs[arc].length - kHiddenSeam * mesh_.arcs[arc].crease;
+      length += mesh_.arcs[arc].weighted - kHiddenSeam * mesh_.arcs[arc].crease;
     if (relaxed_) length += options_.chart_worth * std::sqrt(piece_area_);
     const CoarseChart &p = chart(a), &q = chart(b);
     const double worth = options_.seam_worth * length * std::sqrt(piece_area_);

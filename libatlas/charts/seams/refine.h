@@ -18,8 +18,8 @@ void move_triangle(const Topology& topology, std::uint32_t h, Partition& partiti
 // Whether the chart of t stays connected without t, judged from the triangles around t's corners.
 bool removable(const Topology& topology, const Partition& partition, std::uint32_t t);
 
-// Returns what a linked edge costs in a border: its length, or a quarter of it if the fold is
-// sharper than the crease angle; many times as much inside a polygon.
+// Returns what a linked edge costs in a border: its length times the user's weight, or a quarter of
+// it if the fold is sharper than the crease angle; many times as much inside a polygon.
 double border_weight(const Topology& topology, std::uint32_t half_edge, double crease_cosine);
 
 // A limit on charts' normals. No limit if `axes` is empty.

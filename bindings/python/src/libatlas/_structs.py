@@ -33,6 +33,7 @@ class Mesh(ctypes.Structure):
         ("density", c_float),
         ("polygon_sizes", c_void_p),
         ("polygon_count", c_size_t),
+        ("seam_weights", c_void_p),
     ]
 
 
