@@ -110,6 +110,8 @@ export interface UnwrapOptions extends Callbacks {
   partGaps?: boolean;
   /** Charts, uvs and places of this stay wherever triangles are unchanged; not with keepUvs or instances. */
   like?: EarlierUvs;
+  /** What seams count beside stretch, 0.001..1000: more gives fewer charts and shorter seams; default 1. */
+  seamWeight?: number;
   /** Begin with the defaults for lightmaps: square pages, room for mip levels, parts of charts kept apart. */
   lightmap?: boolean | { texelsPerMetre?: number; metresPerUnit?: number };
   /** Return the seams of each mesh; default false. */

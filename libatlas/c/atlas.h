@@ -211,6 +211,9 @@ typedef struct libatlas_unwrap_options {
   // Charts, uvs and places of this stay wherever triangles are unchanged, see UnwrapOptions::like
   // of unwrap/unwrap.h. Not with keep_uvs or instances. Default null: all is new.
   const libatlas_earlier_uvs* like;
+  // What seams count beside stretch, 0.001..1000: more gives fewer charts and shorter seams, which
+  // stretch more within max_stretch. Default 1, as 0 is.
+  double seam_weight;
 } libatlas_unwrap_options;
 LIBATLAS_API libatlas_status libatlas_unwrap_options_init(libatlas_unwrap_options* options,
                                                           size_t size);

@@ -39,6 +39,7 @@ libatlas_unwrap_options options_to_c(const UnwrapOptions& options) {
   c.cone_degrees = options.charts.cone_degrees;
   c.crease_degrees = options.charts.crease_degrees;
   c.min_fill = options.charts.min_fill;
+  c.seam_weight = options.charts.seam_weight;
   c.uv_aspect = options.charts.uv_aspect;
   c.texels_per_unit = options.texels_per_unit;
   c.pages = options.pages;
@@ -62,6 +63,7 @@ UnwrapOptions from_c(const libatlas_unwrap_options& c) {
   options.charts.cone_degrees = c.cone_degrees;
   options.charts.crease_degrees = c.crease_degrees;
   options.charts.min_fill = c.min_fill;
+  if (c.seam_weight != 0) options.charts.seam_weight = c.seam_weight;  // 0: an earlier header
   options.charts.uv_aspect = c.uv_aspect;
   options.charts.preset = ChartPreset(c.charts);
   options.charts.split_at_materials = c.split_at_materials != 0;

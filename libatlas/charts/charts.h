@@ -69,6 +69,9 @@ struct ChartOptions {
   // not 0, what is too long or too large for the pages that they pack. At least 0 (never) and below
   // 1. Not with keep_uv_charts.
   double min_fill = 0.72;
+  // What seams count beside stretch, times MeshView::seam_weights; 1e-3..1e3. More: fewer charts
+  // and shorter seams, which stretch more within max_stretch.
+  double seam_weight = 1;
 };
 
 // Whether every option lies in the range given above; the message names the field and its range.

@@ -106,6 +106,7 @@ class RandomArguments : public testing::Test {
     if (!often()) o.cone_degrees = number(60);
     if (!often()) o.crease_degrees = number(60);
     if (!often()) o.min_fill = number(0.7);
+    if (!often()) o.seam_weight = number(2);
     if (!often()) o.uv_aspect = number(1);
     if (!often()) o.texels_per_unit = number(10);
     if (!often()) o.pages = std::uint32_t(integer(2));

@@ -77,6 +77,26 @@ TEST(SeamWeights, ATubeIsCutAlongItsLightSide) {
   }
 }
 
+TEST(SeamWeights, TradeSeamsForStretch) {
+  for (const Shape& shape : {torus(60, 30), noisy(geodesic_sphere(16), 0.01, 5)}) {
+    std::vector<ChartSet> sets;
+    for (const double weight : {0.2, 1.0, 5.0}) {
+      ChartOptions options;
+      options.seam_weight = weight;
+      sets.push_back(weighted_charts(shape, {}, options));
+    }
+    for (std::size_t i = 1; i < sets.size(); ++i) {
+      EXPECT_LT(sets[i].seam_length, 0.95 * sets[i - 1].seam_length) << shape.name;
+      EXPECT_GT(sets[i].distortion.stretch_l2, sets[i - 1].distortion.stretch_l2) << shape.name;
+    }
+    EXPECT_LT(sets.back().charts.size(), sets.front().charts.size()) << shape.name;
+    EXPECT_LE(sets.back().distortion.stretch_999, 1.2501) << shape.name;
+    // The same as weights that are all alike.
+    const std::vector<float> all(shape.positions.size(), 5);
+    EXPECT_EQ(bytes(weighted_charts(shape, all)), bytes(sets.back())) << shape.name;
+  }
+}
+
 TEST(SeamWeights, OfOneChangeNothing) {
   for (const Shape& shape : {torus(40, 24), box(6), noisy(icosphere(3), 0.03, 5)})
     EXPECT_EQ(bytes(weighted_charts(shape, std::vector<float>(shape.positions.size(), 1))),

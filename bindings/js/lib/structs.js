@@ -25,7 +25,7 @@ export const structs = {
     pointer polygon_sizes; size polygon_count; pointer seam_weights`),
   unwrap_options: struct(`size size; f64 max_stretch cone_degrees crease_degrees min_fill uv_aspect texels_per_unit;
     u32 pages; i32 page_size padding mip_levels alignment charts packing split_at_materials keep_uvs allow_rotation
-    square part_gaps; pointer like`),
+    square part_gaps; pointer like; f64 seam_weight`),
   earlier_uvs: struct(`size size; pointer positions; size position_count position_stride; pointer indices;
     size index_count index_bytes; pointer uvs; size uv_count uv_stride; pointer uv_indices triangle_page pages;
     size page_count; f64 tolerance; pointer objects`),

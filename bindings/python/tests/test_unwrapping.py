@@ -92,6 +92,15 @@ def test_seams_keep_away_from_high_weights():
         seams(np.ones(3))
 
 
+def test_seams_are_weighed_against_stretch():
+    few, usual = (libatlas.unwrap(*torus(60, 30), seam_weight=weight) for weight in (5, 1))
+    assert len(few.charts) < len(usual.charts)
+    assert few.distortion.seam_length < usual.distortion.seam_length
+    assert few.distortion.stretch_l2 > usual.distortion.stretch_l2
+    with pytest.raises(libatlas.OptionError, match="seam_weight is -1"):
+        libatlas.unwrap(*torus(), seam_weight=-1)
+
+
 def test_materials_divide_charts():
     vertices, faces = terrain()
     materials = np.arange(len(faces)) // 500

@@ -46,6 +46,7 @@ class UnwrapOptions(TypedDict, total=False):
     square: bool  #: sides are equal and powers of two; default False
     part_gaps: bool  #: keep parts of one chart apart, as lightmaps need; default False
     like: EarlierUvs | None  #: charts, uvs and places of this stay wherever triangles are unchanged; not with keep_uvs
+    seam_weight: float  #: what seams count beside stretch, 0.001..1000: more gives fewer charts; default 1
 
 
 class PackOptions(TypedDict, total=False):

@@ -80,6 +80,7 @@ class UnwrapOptions(ctypes.Structure):
         ("square", c_int32),
         ("part_gaps", c_int32),
         ("like", c_void_p),
+        ("seam_weight", c_double),
     ]
 
 
