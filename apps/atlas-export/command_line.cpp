@@ -98,6 +98,12 @@ void add_chart_options(CLI::App& app, ExportCommand& command) {
                  "cut for the page")
       ->capture_default_str()
       ->check(within(0, 0.999, "at least 0, below 1"));
+  app.add_option(
+         "--seam-weight", options.charts.seam_weight,
+         "What seams count beside stretch: more gives fewer charts and shorter seams, which "
+         "stretch more within the bound")
+      ->capture_default_str()
+      ->check(within(0.001, 1000, "0.001..1000"));
   app.add_option("--preset", options.charts.preset, "Chart quality: fast, default or best")
       ->transform(choices<ChartPreset>({{"fast", ChartPreset::fast},
                                         {"default", ChartPreset::standard},

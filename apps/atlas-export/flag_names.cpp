@@ -7,7 +7,7 @@
 namespace atlas::app {
 namespace {
 
-constexpr std::array<FlagName, 41> kFlagNames{{
+constexpr std::array<FlagName, 42> kFlagNames{{
     {"ExportOptions::atlases", "--atlases"},
     {"ExportOptions::lightmap_pages", "--atlases"},
     {"ExportOptions::plain_pages", "--atlases"},
@@ -44,6 +44,7 @@ constexpr std::array<FlagName, 41> kFlagNames{{
     {"ChartOptions::keep_uv_charts", "--keep-uv-charts"},
     {"ChartOptions::uv_aspect", "--uv-aspect"},
     {"ChartOptions::min_fill", "--min-fill"},
+    {"ChartOptions::seam_weight", "--seam-weight"},
     {"ToneOptions::op", "--tone"},
     {"ToneOptions::white", "--white"},
     {"ToneOptions::exposure_stops", "--exposure"},

@@ -45,6 +45,8 @@ export interface Mesh {
   materials?: Numbers;
   /** 1 a corner: not 0 if the edge from it to the next corner of its face is a seam. */
   seams?: Numbers;
+  /** 1 a vertex, at least 0: a seam along an edge counts its length times the mean of its ends' weights; default 1. */
+  seamWeights?: Numbers;
   /** 1 a face, times density. */
   triangleDensity?: Numbers;
   /** Linear density of texels relative to other meshes, > 0; default 1. */
@@ -106,12 +108,36 @@ export interface UnwrapOptions extends Callbacks {
   square?: boolean;
   /** Keep parts of one chart apart, as lightmaps need; default false. */
   partGaps?: boolean;
+  /** Charts, uvs and places of this stay wherever triangles are unchanged; not with keepUvs or instances. */
+  like?: EarlierUvs;
+  /** What seams count beside stretch, 0.001..1000: more gives fewer charts and shorter seams; default 1. */
+  seamWeight?: number;
   /** Begin with the defaults for lightmaps: square pages, room for mip levels, parts of charts kept apart. */
   lightmap?: boolean | { texelsPerMetre?: number; metresPerUnit?: number };
   /** Return the seams of each mesh; default false. */
   seams?: boolean;
   /** Of textures: samples a texel, 1..64; default 4. */
   shifts?: number;
+}
+
+/** An earlier state of all meshes, which are one here. Triangles are found by their positions; those without usable
+ * uvs are made as new. */
+export interface EarlierUvs {
+  /** 3 numbers each. */
+  positions: Numbers;
+  /** 3 a triangle. */
+  indices?: Numbers;
+  /** 2 numbers each, 1 a position or by uvIndices: 0..1 over their page, origin bottom left. */
+  uvs: Numbers;
+  /** 3 a triangle. One out of range: that corner has none. */
+  uvIndices?: Numbers;
+  /** 1 a triangle; without it all lie on page 0. */
+  trianglePage?: Numbers;
+  pages: Page[];
+  /** 1 a position: the number of its mesh, in which alone its triangles are looked for; needed where meshes touch. */
+  objects?: Numbers;
+  /** How far a corner may have moved for its triangle to be unchanged, as a share of the mean edge; default 0.01. */
+  tolerance?: number;
 }
 
 export interface Page {
@@ -156,6 +182,8 @@ export interface Charts {
   stretchL2: Float64Array;
   stretch999: Float64Array;
   stretchMax: Float64Array;
+  /** What it has of the uvs of `like`. 0: nothing; 1: repaired where it lay; 2: kept as it was. Empty: nothing was found again. */
+  origins: Uint8Array;
 }
 
 export interface Unwrapped {

@@ -126,6 +126,9 @@ typedef struct libatlas_mesh {
   // enclose holes that are joined to the outline by an edge there and back.
   const uint32_t* polygon_sizes;
   size_t polygon_count;
+  // 1 a position, at least 0 and finite: a seam along an edge counts its length times the mean of
+  // its ends' weights, so that seams keep away from high ones. Null: all are 1.
+  const float* seam_weights;
 } libatlas_mesh;
 LIBATLAS_API libatlas_status libatlas_mesh_init(libatlas_mesh* mesh, size_t size);
 
@@ -158,6 +161,33 @@ LIBATLAS_API libatlas_status libatlas_add_instances(libatlas_context* context,
 typedef int32_t libatlas_preset;
 enum { LIBATLAS_FAST = 0, LIBATLAS_STANDARD = 1, LIBATLAS_BEST = 2 };
 
+// An earlier state of the meshes of an atlas, with its uvs, as in EarlierUvs of unwrap/like.h. All
+// meshes are one here. Numbers and orders do not matter: triangles are found by their positions.
+// Triangles without usable uvs (such as uvs that are not finite) are made as new.
+typedef struct libatlas_earlier_uvs {
+  size_t size;
+  const void* positions;  // 3 floats each, finite
+  size_t position_count, position_stride;
+  const void* indices;  // 3 a triangle, into positions
+  size_t index_count;
+  size_t index_bytes;  // 4, or 2 for indices of 16 bits
+  const void* uvs;     // 2 floats each: 0..1 over their page, origin bottom left
+  size_t uv_count, uv_stride;
+  // Where uvs are not numbered as positions are: index_count indices of index_bytes into them. An
+  // index out of range: that corner has none. Or null.
+  const void* uv_indices;
+  const uint32_t* triangle_page;  // 1 a triangle, or null: all lie on page 0
+  const libatlas_extent* pages;   // at least one; sides of 1..16384
+  size_t page_count;
+  // How far a corner may have moved for its triangle to be unchanged, as a share of the mean edge;
+  // at least 0, below 1; default 0.01.
+  double tolerance;
+  // 1 a position: the number of its mesh, in which alone its triangles are then looked for; needed
+  // where meshes touch or lie on each other. Null: triangles may be of any mesh.
+  const uint32_t* objects;
+} libatlas_earlier_uvs;
+LIBATLAS_API libatlas_status libatlas_earlier_uvs_init(libatlas_earlier_uvs* earlier, size_t size);
+
 // Flags are 0 or 1.
 typedef struct libatlas_unwrap_options {
   size_t size;
@@ -178,6 +208,12 @@ typedef struct libatlas_unwrap_options {
   int32_t allow_rotation;  // turn charts to pack better; default 1
   int32_t square;          // sides are equal and powers of two; default 0
   int32_t part_gaps;       // keep parts of one chart apart, as lightmaps need; default 0
+  // Charts, uvs and places of this stay wherever triangles are unchanged, see UnwrapOptions::like
+  // of unwrap/unwrap.h. Not with keep_uvs or instances. Default null: all is new.
+  const libatlas_earlier_uvs* like;
+  // What seams count beside stretch, 0.001..1000: more gives fewer charts and shorter seams, which
+  // stretch more within max_stretch. Default 1, as 0 is.
+  double seam_weight;
 } libatlas_unwrap_options;
 LIBATLAS_API libatlas_status libatlas_unwrap_options_init(libatlas_unwrap_options* options,
                                                           size_t size);
@@ -195,8 +231,8 @@ typedef struct libatlas_unwrapped libatlas_unwrapped;
 // Unwraps all meshes of an atlas; `options` may be null. Nothing is left out: triangle t of a mesh
 // is triangle t of its result, with its corners in the same order; of polygons each has its size -
 // 2 triangles, one polygon after the other. May be called again, with other options. Status:
-// BAD_INPUT without a mesh, BAD_OPTION, NO_SOLUTION (more charts than the pages hold texels for),
-// CANCELLED.
+// BAD_INPUT without a mesh or with the element of `like` that is not usable, BAD_OPTION,
+// NO_SOLUTION (more charts than the pages hold texels for), CANCELLED.
 LIBATLAS_API libatlas_status libatlas_unwrap(libatlas_context* context, const libatlas_atlas* atlas,
                                              const libatlas_unwrap_options* options,
                                              libatlas_unwrapped** unwrapped);
@@ -273,6 +309,13 @@ LIBATLAS_API libatlas_status libatlas_get_polygons(libatlas_context* context,
                                                    const libatlas_unwrapped* unwrapped,
                                                    uint32_t mesh, libatlas_polygon_uvs* polygons);
 
+// What a chart has of the uvs of `like`.
+enum {
+  LIBATLAS_MADE = 0,      // nothing: it is new, or has been moved
+  LIBATLAS_REPAIRED = 1,  // unchanged triangles stay; others were lost, or have been laid beside
+  LIBATLAS_KEPT = 2       // all that it had, at its place: its texels need not be made again
+};
+
 // All charts of the atlas; arrays have 1 element a chart.
 typedef struct libatlas_charts {
   size_t size;
@@ -286,6 +329,7 @@ typedef struct libatlas_charts {
   const double* stretch_l2;  // as in libatlas_atlas_info
   const double* stretch_999;
   const double* stretch_max;
+  const uint8_t* origins;  // LIBATLAS_MADE etc.; null: nothing of `like` was found again
 } libatlas_charts;
 LIBATLAS_API libatlas_status libatlas_get_charts(libatlas_context* context,
                                                  const libatlas_unwrapped* unwrapped,

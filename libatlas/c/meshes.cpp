@@ -19,6 +19,7 @@ StridedMesh strided_mesh(const libatlas_mesh& mesh) {
   if (mesh.materials) strided.materials = {mesh.materials, faces};
   if (mesh.seams) strided.seams = {mesh.seams, mesh.index_count};
   if (mesh.triangle_density) strided.density = {mesh.triangle_density, faces};
+  if (mesh.seam_weights) strided.seam_weights = {mesh.seam_weights, mesh.position_count};
   if (mesh.polygon_sizes) strided.polygon_sizes = {mesh.polygon_sizes, mesh.polygon_count};
   return strided;
 }

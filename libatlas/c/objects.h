@@ -39,7 +39,7 @@ struct libatlas_unwrapped {
   std::vector<std::vector<libatlas_instance>> instances = {};  // one per mesh
   // Columns of libatlas_charts.
   std::vector<std::uint32_t> mesh = {}, page = {}, material = {}, triangle_count = {};
-  std::vector<std::uint8_t> kept = {};
+  std::vector<std::uint8_t> kept = {}, origins = {};
   std::vector<double> area = {}, stretch_l2 = {}, stretch_999 = {}, stretch_max = {};
 };
 

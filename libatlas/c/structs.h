@@ -20,6 +20,11 @@ template <class T>
 inline constexpr std::size_t kFirstSize = sizeof(T);
 template <>
 inline constexpr std::size_t kFirstSize<libatlas_mesh> = offsetof(libatlas_mesh, polygon_sizes);
+template <>
+inline constexpr std::size_t kFirstSize<libatlas_unwrap_options> = offsetof(libatlas_unwrap_options,
+                                                                            like);
+template <>
+inline constexpr std::size_t kFirstSize<libatlas_charts> = offsetof(libatlas_charts, origins);
 
 template <class T>
 constexpr bool usable_size(std::size_t size) {

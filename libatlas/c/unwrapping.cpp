@@ -1,3 +1,4 @@
+#include "libatlas/c/earlier.h"
 #include "libatlas/c/objects.h"
 #include "libatlas/c/structs.h"
 
@@ -23,6 +24,10 @@ libatlas_unwrapped::libatlas_unwrapped(atlas::UnwrappedAtlas unwrapped)
     stretch_999.push_back(chart.distortion.stretch_999);
     stretch_max.push_back(chart.distortion.stretch_linf);
   }
+  static_assert(LIBATLAS_MADE == int(atlas::ChartOrigin::made) &&
+                LIBATLAS_REPAIRED == int(atlas::ChartOrigin::repaired) &&
+                LIBATLAS_KEPT == int(atlas::ChartOrigin::kept));
+  for (const atlas::ChartOrigin origin : all.origins) origins.push_back(std::uint8_t(origin));
 }
 
 namespace atlas::c {
@@ -34,6 +39,7 @@ libatlas_unwrap_options options_to_c(const UnwrapOptions& options) {
   c.cone_degrees = options.charts.cone_degrees;
   c.crease_degrees = options.charts.crease_degrees;
   c.min_fill = options.charts.min_fill;
+  c.seam_weight = options.charts.seam_weight;
   c.uv_aspect = options.charts.uv_aspect;
   c.texels_per_unit = options.texels_per_unit;
   c.pages = options.pages;
@@ -57,6 +63,7 @@ UnwrapOptions from_c(const libatlas_unwrap_options& c) {
   options.charts.cone_degrees = c.cone_degrees;
   options.charts.crease_degrees = c.crease_degrees;
   options.charts.min_fill = c.min_fill;
+  if (c.seam_weight != 0) options.charts.seam_weight = c.seam_weight;  // 0: an earlier header
   options.charts.uv_aspect = c.uv_aspect;
   options.charts.preset = ChartPreset(c.charts);
   options.charts.split_at_materials = c.split_at_materials != 0;
@@ -155,6 +162,7 @@ libatlas_charts describe_charts(const libatlas_unwrapped& unwrapped) {
   charts.stretch_l2 = unwrapped.stretch_l2.data();
   charts.stretch_999 = unwrapped.stretch_999.data();
   charts.stretch_max = unwrapped.stretch_max.data();
+  charts.origins = unwrapped.origins.empty() ? nullptr : unwrapped.origins.data();
   return charts;
 }
 
@@ -184,7 +192,13 @@ libatlas_status libatlas_unwrap(libatlas_context* context, const libatlas_atlas*
         return s;
       if (auto s = atlas::c::check_flags(own); !s.ok()) return s;
     }
-    auto result = atlas->atlas.unwrap(atlas::c::from_c(own), context->context);
+    atlas::UnwrapOptions cpp = atlas::c::from_c(own);
+    atlas::c::EarlierArrays earlier;
+    if (own.like) {
+      if (auto s = earlier.take(*own.like); !s.ok()) return s;
+      cpp.like = &earlier.uvs();
+    }
+    auto result = atlas->atlas.unwrap(cpp, context->context);
     if (!result.ok()) return result.status();
     return std::make_unique<libatlas_unwrapped>(std::move(*result));
   });

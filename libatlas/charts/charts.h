@@ -34,6 +34,11 @@ struct MeshView {
   // unless it cannot lie flat in one piece, or given seams, materials or texcoords cut it. Nothing
   // but equality counts.
   std::span<const std::uint32_t> polygons = {};
+  // At least 0 and finite, 1 a position, or empty: all are 1. A seam along an edge counts its
+  // length times the mean of its ends' weights where charts are made: seams keep away from high
+  // weights, and more stretch is put up with where that saves them. Of positions that are one
+  // vertex, the highest counts. Cuts for the page, or of what does not flatten, do not ask.
+  std::span<const float> seam_weights = {};
 };
 
 enum class ChartPreset { fast, standard, best };
@@ -65,6 +70,9 @@ struct ChartOptions {
   // not 0, what is too long or too large for the pages that they pack. At least 0 (never) and below
   // 1. Not with keep_uv_charts.
   double min_fill = 0.72;
+  // What seams count beside stretch, times MeshView::seam_weights; 1e-3..1e3. More: fewer charts
+  // and shorter seams, which stretch more within max_stretch.
+  double seam_weight = 1;
 };
 
 // Whether every option lies in the range given above; the message names the field and its range.

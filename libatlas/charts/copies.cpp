@@ -30,7 +30,7 @@ std::uint64_t mixed(std::uint64_t hash, std::uint64_t value) {
 
 // Properties of a piece that are compared first.
 struct Digest {
-  std::uint64_t hash = 0;  // of connectivity and densities
+  std::uint64_t hash = 0;  // of connectivity, densities and weights of seams
   double edges = 0;        // sum of the lengths
   // Tolerance of a length; 0: the piece is too far from the origin.
   double slack = 0;
@@ -105,6 +105,8 @@ class Finder {
           name_[v] = vertices++;
         }
         d.hash = mixed(d.hash, name_[v]);
+        if (!topology_.seam_weights.empty())
+          d.hash = mixed(d.hash, std::bit_cast<std::uint32_t>(topology_.seam_weights[v]));
         d.hash = mixed(d.hash, o == kNoIndex ? kNoIndex : 3 * place_[o / 3] + o % 3);
         if (topology_.inner(h)) d.hash = mixed(d.hash, 1);
         const glm::dvec3 p = point(h);

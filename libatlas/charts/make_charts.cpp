@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "libatlas/charts/assemble_charts.h"
 #include "libatlas/charts/charts.h"
@@ -80,6 +81,14 @@ std::vector<FlatChart> keep_charts(const Work& work, const Context& context, Cha
   return std::move(given.charts);
 }
 
+// Multiplies all weights of seams.
+void weigh_seams(double by, Topology& topology) {
+  if (by == 1) return;
+  if (topology.seam_weights.empty()) topology.seam_weights.assign(topology.points.size(), 1);
+  for (float& weight : topology.seam_weights)
+    weight = float(std::min(by * double{weight}, double{std::numeric_limits<float>::max()}));
+}
+
 // Length of the edges that exactly two triangles share in space, but not in uv.
 double seam_length(const Topology& topology, const ChartSet& set) {
   const auto uv = [&](std::uint32_t h) { return set.triangle_uv[topology.input_corner(h)]; };
@@ -129,6 +138,8 @@ Status check_options(const ChartOptions& options) {
     return must("crease_degrees", options.crease_degrees, "be above 0 degrees and at most 180");
   if (!(options.min_fill >= 0 && options.min_fill < 1))
     return must("min_fill", options.min_fill, "be at least 0 (never cut for it) and below 1");
+  if (!(options.seam_weight >= 1e-3 && options.seam_weight <= 1e3))
+    return must("seam_weight", options.seam_weight, "lie within 0.001..1000 (1: as usual)");
   if (!is_enumerator(options.preset, ChartPreset::best))
     return must("preset", int(options.preset), "be a ChartPreset");
   constexpr const char* kAspect = "be a page's width / height within 1e-6..1e6 (1: square)";
@@ -174,6 +185,7 @@ Result<ChartSet> make_charts(const MeshView& mesh, const ChartOptions& options,
       {given, std::move(canonical.places), std::move(canonical.opposite)},
       {options.split_at_materials, options.keep_uv_charts, uv_aspects(options)}, context);
   if (!built.ok()) return built.status();
+  weigh_seams(options.seam_weight, *built);
   const Topology& topology = *built;
   ChartSet set;
   count_defects(topology.defects, set.repairs);

@@ -46,7 +46,7 @@ std::vector<double> crossed_borders(const Cut& cut, const Regions& regions);
 // The cost of a piece's charts; less is better.
 struct PieceCost {
   std::size_t charts = 0;
-  double seams = 0;  // length
+  double seams = 0;  // length times weight
 
   bool operator<(const PieceCost& other) const {
     return charts < other.charts || (charts == other.charts && seams < kShorter * other.seams);

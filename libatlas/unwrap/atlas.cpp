@@ -44,6 +44,7 @@ StridedMesh strided(const MeshView& mesh) {
       .density = mesh.density,
       .seams = mesh.seams,
       .objects = mesh.objects,
+      .seam_weights = mesh.seam_weights,
       .polygons = mesh.polygons,
   };
 }
@@ -212,6 +213,7 @@ void Atlas::append(const StridedMesh& mesh, float density) {
     indices_.push_back(std::uint32_t(position + mesh.indices[i]));
   const std::uint32_t objects = append_positions(mesh);
   append_values(materials_, triangle, mesh.materials, triangles, 0u);
+  append_values(seam_weights_, position, mesh.seam_weights, mesh.positions.count, 1.0f);
   append_seams(mesh);
   append_texcoords(mesh);
   append_polygons(mesh);
@@ -293,6 +295,7 @@ void Atlas::cut_to_meshes() {
   };
   cut(positions_, positions);
   cut(objects_, positions);
+  cut(seam_weights_, positions);
   for (auto* corners : {&indices_, &texcoord_indices_}) cut(*corners, 3 * triangles);
   cut(seams_, 3 * triangles);
   cut(materials_, triangles);
@@ -314,6 +317,7 @@ Result<UnwrappedAtlas> Atlas::unwrap(const UnwrapOptions& options, const Context
   view.texcoord_indices = texcoord_indices_;
   view.seams = seams_;
   view.polygons = polygons_;
+  view.seam_weights = seam_weights_;
   if (object_count_ > 1) view.objects = objects_;
   const bool blocks = std::any_of(instances_.begin(), instances_.end(),
                                   [](const auto& densities) { return !densities.empty(); });

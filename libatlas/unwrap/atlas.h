@@ -28,6 +28,7 @@ struct StridedMesh {
   std::span<const float> density = {};
   std::span<const std::uint8_t> seams = {};
   std::span<const std::uint32_t> objects = {};
+  std::span<const float> seam_weights = {};
   std::span<const std::uint32_t> polygons = {};  // not with polygon_sizes
   // The corners of each polygon, at least 3; or empty: all are triangles. Sizes, not offsets, since
   // files and editors have them, and every list of sizes that adds up is a valid one. `indices`,
@@ -149,7 +150,7 @@ class Atlas {
   // Arrays of MeshView, which stay empty until a mesh has one.
   std::vector<Vec3f> positions_ = {};
   std::vector<std::uint32_t> indices_ = {}, materials_ = {}, texcoord_indices_ = {}, objects_ = {};
-  std::vector<float> density_ = {};
+  std::vector<float> density_ = {}, seam_weights_ = {};
   std::vector<Vec2f> texcoords_ = {};
   std::vector<std::uint8_t> seams_ = {};
   std::vector<std::uint32_t> polygons_ = {};

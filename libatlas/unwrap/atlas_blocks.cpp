@@ -60,6 +60,7 @@ Atlas::SubMesh Atlas::mesh_view(std::size_t mesh) const {
   out.view.seams = slice(seams_, 3 * t, 3 * t_end);
   out.view.objects = slice(objects_, v, v_end);
   out.view.polygons = slice(polygons_, t, t_end);
+  out.view.seam_weights = slice(seam_weights_, v, v_end);
   return out;
 }
 

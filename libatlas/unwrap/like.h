@@ -22,6 +22,9 @@ struct EarlierUvs {
   std::span<const std::uint32_t> uv_indices = {};
   std::span<const std::uint32_t> triangle_page = {};  // 1 a triangle; empty: all lie on page 0
   std::span<const Extent> pages = {};                 // texels, sides of 1 .. 16384
+  // 1 a position, or empty: as MeshView::objects of the new mesh, and of an Atlas the number of the
+  // mesh. Triangles are then found in their own object only, whatever else lies at their place.
+  std::span<const std::uint32_t> objects = {};
   // How far a corner may lie from where it lay for its triangle to be unchanged, as a share of the
   // mean edge of the earlier mesh; at least 0, below 1.
   double tolerance = 0.01;

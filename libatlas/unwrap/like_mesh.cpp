@@ -88,6 +88,8 @@ Status check_earlier(const EarlierUvs& e, const std::string& who) {
     return bad("uv indices must be empty or 3 a triangle");
   if (!e.triangle_page.empty() && e.triangle_page.size() != triangles)
     return bad("triangle_page must be empty or 1 a triangle");
+  if (!e.objects.empty() && e.objects.size() != e.positions.size())
+    return bad("objects must be empty or 1 a position");
   if (e.pages.empty()) return bad("it has no page (give the size of each in texels)");
   for (std::size_t p = 0; p < e.pages.size(); ++p) {
     const auto [width, height] = e.pages[p];
@@ -107,7 +109,7 @@ LikeMesh::LikeMesh(const MeshView& mesh, const EarlierUvs& earlier, const Option
       max_stretch_(options.max_stretch),
       pages_(earlier.pages.begin(), earlier.pages.end()) {
   const JoinedMesh joined = join_triangles(mesh.positions, mesh.indices, mesh.objects),
-                   before = join_triangles(earlier.positions, earlier.indices, {});
+                   before = join_triangles(earlier.positions, earlier.indices, earlier.objects);
   PageGrid grid(earlier.pages, before.triangle_count());
   TakenUvs taken = take_uvs({joined, before, earlier}, grid);
   lay_beside(joined, {earlier.pages, mesh.density, options.max_stretch, double(options.padding)},

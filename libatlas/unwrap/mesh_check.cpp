@@ -85,6 +85,9 @@ class MeshCheck {
     if (wrong(mesh_.objects.size(), mesh_.positions.count))
       return bad(fmt::format("{} objects for {} positions (one each, or none)",
                              mesh_.objects.size(), mesh_.positions.count));
+    if (wrong(mesh_.seam_weights.size(), mesh_.positions.count))
+      return bad(fmt::format("{} seam weights for {} positions (one each, or none)",
+                             mesh_.seam_weights.size(), mesh_.positions.count));
     return {};
   }
 
@@ -121,6 +124,10 @@ class MeshCheck {
       if (mesh_.normals.count > 0 && !is_finite(mesh_.normals[v]))
         return bad(face_of(i), fmt::format("vertex {} has a normal that is not finite", v));
     }
+    for (std::size_t v = 0; v < mesh_.seam_weights.size(); ++v)
+      if (!(mesh_.seam_weights[v] >= 0) || !std::isfinite(mesh_.seam_weights[v]))
+        return bad(fmt::format("vertex {}: seam weight {} (must be at least 0 and finite)", v,
+                               mesh_.seam_weights[v]));
     for (std::size_t t = 0; t < mesh_.density.size(); ++t)
       if (!usable(mesh_.density[t]) || !usable(density * mesh_.density[t]))
         return bad(t, fmt::format("density {} times {} ({})", mesh_.density[t], density, kUsable));

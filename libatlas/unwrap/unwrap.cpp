@@ -175,8 +175,8 @@ Result<UnwrappedMesh> unwrap_like(const LikeMesh& like, const UnwrapOptions& opt
 }  // namespace
 
 EarlierUvs earlier_uvs(const MeshView& mesh, const UnwrappedMesh& unwrapped) {
-  return {mesh.positions,          mesh.indices,   unwrapped.uvs, unwrapped.indices,
-          unwrapped.triangle_page, unwrapped.pages};
+  return {mesh.positions,          mesh.indices,    unwrapped.uvs, unwrapped.indices,
+          unwrapped.triangle_page, unwrapped.pages, mesh.objects};
 }
 
 Result<UnwrappedMesh> place_charts(const MeshView& mesh, ChartSet charts,

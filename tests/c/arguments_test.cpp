@@ -81,6 +81,7 @@ class RandomArguments : public testing::Test {
     if (!often()) m.materials = materials_.data();
     if (!often()) m.seams = seams_.data();
     if (!often()) m.triangle_density = densities_.data();
+    if (!often()) m.seam_weights = densities_.data();
     m.density = float(number(1));
     if (!often()) {
       // Sizes that add up to the indices, but for a while.
@@ -105,6 +106,7 @@ class RandomArguments : public testing::Test {
     if (!often()) o.cone_degrees = number(60);
     if (!often()) o.crease_degrees = number(60);
     if (!often()) o.min_fill = number(0.7);
+    if (!often()) o.seam_weight = number(2);
     if (!often()) o.uv_aspect = number(1);
     if (!often()) o.texels_per_unit = number(10);
     if (!often()) o.pages = std::uint32_t(integer(2));
@@ -118,6 +120,30 @@ class RandomArguments : public testing::Test {
          {&o.split_at_materials, &o.keep_uvs, &o.allow_rotation, &o.square, &o.part_gaps})
       if (!often()) *f = flag();
     return o;
+  }
+
+  libatlas_earlier_uvs earlier() {
+    libatlas_earlier_uvs e;
+    libatlas_earlier_uvs_init(&e, sizeof e);
+    const libatlas_mesh m = mesh();
+    if (!often()) e.size = below(200);
+    e.positions = m.positions;
+    e.position_count = m.position_count;
+    e.position_stride = m.position_stride;
+    e.indices = m.indices;
+    e.index_count = m.index_count;
+    e.index_bytes = m.index_bytes;
+    e.uvs = often() ? floats_.data() + 50 : nullptr;
+    e.uv_count = below(30);
+    e.uv_stride = m.texcoord_stride;
+    if (!often()) e.uv_indices = m.indices;
+    if (!often()) e.triangle_page = materials_.data();
+    if (!often()) e.objects = materials_.data();
+    pages_ = {libatlas_extent{64, 64}, {integer(64), integer(64)}, {64, 1 << 20}};
+    if (often()) e.pages = pages_.data();
+    e.page_count = often() ? 1 : below(4);
+    if (!often()) e.tolerance = number(0.1);
+    return e;
   }
 
   libatlas_island_options island_options() {
@@ -169,6 +195,7 @@ class RandomArguments : public testing::Test {
   std::array<std::uint16_t, 100> narrow_ = {};
   std::array<std::uint32_t, 40> materials_ = {};
   std::array<std::uint32_t, 40> sizes_ = {};
+  std::array<libatlas_extent, 3> pages_ = {};
   std::array<std::uint8_t, 100> seams_ = {};
   std::array<float, 40> densities_ = {};
   int done_ = 0, refused_ = 0;
@@ -187,7 +214,9 @@ TEST_F(RandomArguments, OfMeshesAndUnwrapping) {
         count(libatlas_add_instances(context_, atlas, &m, often() ? densities_.data() : nullptr,
                                      below(5), nullptr));
     }
-    const libatlas_unwrap_options o = options();
+    libatlas_unwrap_options o = options();
+    const libatlas_earlier_uvs e = earlier();
+    if (below(3) == 0 && o.size == sizeof o) o.like = &e;
     libatlas_unwrapped* unwrapped = nullptr;
     const bool done = count(libatlas_unwrap(context_, atlas, &o, &unwrapped));
     EXPECT_EQ(unwrapped != nullptr, done);

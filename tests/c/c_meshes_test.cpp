@@ -113,6 +113,29 @@ TEST_F(C, InstancesComeBackAsFromTheAtlas) {
             LIBATLAS_BAD_INPUT);
 }
 
+TEST_F(C, SeamsKeepAwayFromHighWeights) {
+  const Shape tube = cylinder(40, 20);
+  for (const float side : {-1.0f, 1.0f}) {
+    const auto atlas = atlas_of({shapes_[0]});  // which has no weights
+    std::vector<float> weights;
+    for (const Vec3f p : tube.positions) weights.push_back(side * p.x > 0 ? 10 : 1);
+    libatlas_mesh mesh = mesh_of(tube);
+    mesh.seam_weights = weights.data();
+    ASSERT_EQ(libatlas_add_mesh(context(), atlas.get(), &mesh, nullptr), LIBATLAS_OK) << message();
+    const auto unwrapped = unwrap(atlas.get());
+    std::vector<std::uint8_t> seams(tube.indices.size());
+    ASSERT_EQ(
+        libatlas_get_seams(context(), atlas.get(), unwrapped.get(), 1, seams.data(), seams.size()),
+        LIBATLAS_OK);
+    EXPECT_NE(std::count(seams.begin(), seams.end(), 1), 0);
+    for (std::size_t h = 0; h < seams.size(); ++h)
+      if (seams[h]) EXPECT_LE(side * tube.positions[tube.indices[h]].x, 1e-6) << h;
+    weights[3] = NAN;
+    EXPECT_EQ(libatlas_add_mesh(context(), atlas.get(), &mesh, nullptr), LIBATLAS_BAD_INPUT);
+    EXPECT_NE(message().find("mesh 2: vertex 3: seam weight nan"), std::string::npos) << message();
+  }
+}
+
 // As a program does that was compiled before meshes had polygons.
 TEST_F(C, MeshesOfEarlierHeadersAreTaken) {
   libatlas_mesh mesh = mesh_of(shapes_[1]);

@@ -248,7 +248,7 @@ TEST_F(C, StructsMayGrow) {
   later.more = 1;
   libatlas_unwrapped* unwrapped = nullptr;
   EXPECT_EQ(libatlas_unwrap(context(), atlas.get(), options, &unwrapped), LIBATLAS_UNSUPPORTED);
-  for (const std::size_t size : {std::size_t{0}, sizeof(libatlas_unwrap_options) - 1,
+  for (const std::size_t size : {std::size_t{0}, offsetof(libatlas_unwrap_options, like) - 1,
                                  std::numeric_limits<std::size_t>::max()}) {
     later.known.size = size;
     EXPECT_EQ(libatlas_unwrap(context(), atlas.get(), options, &unwrapped), LIBATLAS_BAD_OPTION);

@@ -85,7 +85,8 @@ Walk<ChartOptions> of_charts() {
             }},
            {"preset", [](O& o) { beyond(o.preset); }},
            {"preset", [](O& o) { o.preset = ChartPreset(-1); }},
-           {"min_fill", [](O& o) { o.min_fill = kNan; }}},
+           {"min_fill", [](O& o) { o.min_fill = kNan; }},
+           {"seam_weight", [](O& o) { o.seam_weight = 0; }}},
           {"split_at_materials", "keep_uv_charts"}};
 }
 

@@ -389,6 +389,26 @@ TEST(Like, WorksForSeveralMeshesButNotForInstances) {
   EXPECT_EQ(refused.status().code(), ErrorCode::bad_option);
 }
 
+TEST(Like, MeshesThatLieOnEachOtherKeepTheirOwn) {
+  const Shape a = torus(40, 24);
+  Shape both = together(a, a);
+  std::vector<std::uint32_t> objects(both.positions.size(), 0);
+  std::fill(objects.begin() + std::ptrdiff_t(a.positions.size()), objects.end(), 1u);
+  MeshView mesh = view_of(both);
+  mesh.objects = objects;
+  UnwrapOptions options;
+  const Result<UnwrappedMesh> before = unwrap_mesh(mesh, options, {});
+  ASSERT_TRUE(before.ok()) << before.status().message();
+  EarlierUvs earlier = earlier_uvs(mesh, *before);
+  options.like = &earlier;
+  const Result<UnwrappedMesh> now = unwrap_mesh(mesh, options, {});
+  ASSERT_TRUE(now.ok()) << now.status().message();
+  EXPECT_EQ(stayed(*before, *now, all(both.triangle_count())), both.triangle_count());
+  EXPECT_EQ(count(*now, ChartOrigin::kept), now->charts.charts.size());
+  earlier.objects = earlier.objects.first(3);
+  EXPECT_EQ(unwrap_mesh(mesh, options, {}).status().code(), ErrorCode::bad_input);
+}
+
 TEST(Like, ErrorsNameWhatIsWrong) {
   const Shape shape = box(2);
   const UnwrappedMesh before = made_of(shape);

@@ -100,6 +100,15 @@ class UV_OT_libatlas_unwrap(_WritesUVs, Operator):
         min=0,
         max=0.99,
     )
+    seam_weight: FloatProperty(
+        name="Seam Weight",
+        description="What seams count beside stretch: more gives fewer charts and shorter seams",
+        default=1,
+        min=0.001,
+        soft_min=0.1,
+        soft_max=10,
+        max=1000,
+    )
     split_at_materials: BoolProperty(
         name="Split at Materials", description="A chart holds one material only", default=False
     )

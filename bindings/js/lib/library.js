@@ -25,10 +25,12 @@ export class Library {
 
   unwrap(meshes, options = {}) {
     const list = (Array.isArray(meshes) ? meshes : [meshes]).map(tightMesh);
+    const { like, ...rest } = options, earlier = like && tightEarlier(like);
     return this.#run(options, (call) => {
       const atlas = call.create("atlas_create", "atlas_destroy");
       for (const mesh of list) addMesh(call, atlas, mesh);
-      const values = optionValues("unwrap_options", options, ofCalls);
+      const values = optionValues("unwrap_options", rest, ofCalls);
+      if (earlier) values.like = earlierStruct(call, earlier);
       const unwrapped = call.create("unwrap", "unwrapped_destroy", atlas, unwrapOptions(call, options.lightmap, values));
       const result = unwrapResult(call, atlas, unwrapped, list, options.seams);
       if (list.some(({ values }) => values)) result.textures = texturesOf(call, unwrapped, result, list, options.shifts);
@@ -147,6 +149,7 @@ export function tightMesh(mesh, number = 0) {
     materials: numbers(Uint32Array, mesh.materials, 1, name("materials")),
     seams: numbers(Uint8Array, mesh.seams, 1, name("seams")),
     triangleDensity: floats("triangleDensity", 1),
+    seamWeights: floats("seamWeights", 1),
     polygonSizes: numbers(Uint32Array, mesh.polygonSizes, 1, name("polygonSizes")),
     instances: floats("instances", 1),
     values: floats("values", 3),
@@ -166,7 +169,7 @@ function checkLengths(mesh, name) {
   const corners = mesh.indices.length;
   const faces = mesh.polygonSizes?.length ?? Math.floor(corners / 3);
   const positions = mesh.positions.length / 3;
-  const wanted = { normals: 3 * positions, values: 3 * positions, materials: faces, seams: corners, triangleDensity: faces, texcoordIndices: corners };
+  const wanted = { normals: 3 * positions, values: 3 * positions, materials: faces, seams: corners, seamWeights: positions, triangleDensity: faces, texcoordIndices: corners };
   if (!mesh.texcoordIndices) wanted.texcoords = 2 * positions;
   for (const [array, length] of Object.entries(wanted)) {
     if (mesh[array] && mesh[array].length !== length) {
@@ -188,9 +191,41 @@ function meshStruct(call, mesh) {
     normals: call.put(mesh.normals),
     texcoords: call.put(mesh.texcoords), texcoord_count: (mesh.texcoords?.length ?? 0) / 2,
     texcoord_indices: call.put(mesh.texcoordIndices),
-    materials: call.put(mesh.materials), seams: call.put(mesh.seams),
+    materials: call.put(mesh.materials), seams: call.put(mesh.seams), seam_weights: call.put(mesh.seamWeights),
     triangle_density: call.put(mesh.triangleDensity), density: mesh.density,
     polygon_sizes: call.put(mesh.polygonSizes), polygon_count: mesh.polygonSizes?.length ?? 0,
+  });
+}
+
+// Earlier uvs likewise. The library reads as many uvIndices and pages of triangles as indices say.
+function tightEarlier(like) {
+  const name = (array) => `like: ${array}`;
+  const of = (type, array, width) => numbers(type, like[array], width, name(array));
+  const positions = of(Float32Array, "positions", 3);
+  if (!positions) throw new BadInputError(name("positions are missing"));
+  const indices = Uint32Array.from(indexArray(like.indices, positions.length / 3, name("indices")));
+  const result = {
+    positions, indices, uvs: of(Float32Array, "uvs", 2), uvIndices: of(Uint32Array, "uvIndices", 1),
+    trianglePage: of(Uint32Array, "trianglePage", 1), objects: of(Uint32Array, "objects", 1),
+    pages: Int32Array.from((like.pages ?? []).flatMap(({ width, height }) => [width, height])),
+    tolerance: like.tolerance,
+  };
+  const wanted = { objects: positions.length / 3, uvIndices: indices.length, trianglePage: Math.floor(indices.length / 3) };
+  for (const [array, length] of Object.entries(wanted)) {
+    if (result[array] && result[array].length !== length) {
+      throw new BadInputError(name(`${array} has ${result[array].length} numbers instead of ${length}`));
+    }
+  }
+  return result;
+}
+
+function earlierStruct(call, { positions, indices, uvs, uvIndices, trianglePage, pages, tolerance, objects }) {
+  return call.struct("earlier_uvs", {
+    positions: call.put(positions), position_count: positions.length / 3,
+    indices: call.put(indices), index_count: indices.length, index_bytes: 4,
+    uvs: call.put(uvs), uv_count: (uvs?.length ?? 0) / 2, uv_indices: call.put(uvIndices),
+    triangle_page: call.put(trianglePage), pages: call.put(pages), page_count: pages.length / 2, objects: call.put(objects),
+    ...(tolerance === undefined ? {} : { tolerance }),
   });
 }
 
@@ -266,10 +301,10 @@ function seamsOf(call, atlas, unwrapped, mesh, count) {
 // Arrays with one element a chart.
 function chartsOf(call, unwrapped) {
   const { chart_count, ...charts } = call.ask("get_charts", "charts", unwrapped);
-  const types = { mesh: Uint32Array, page: Uint32Array, material: Uint32Array, triangle_count: Uint32Array, kept: Uint8Array };
+  const types = { mesh: Uint32Array, page: Uint32Array, material: Uint32Array, triangle_count: Uint32Array, kept: Uint8Array, origins: Uint8Array };
   const result = {};
   for (const [name, place] of Object.entries(charts)) {
-    if (name !== "size") result[camelCase(name)] = call.take(types[name] ?? Float64Array, place, chart_count);
+    if (name !== "size") result[camelCase(name)] = call.take(types[name] ?? Float64Array, place, place && chart_count);
   }
   return result;
 }

@@ -22,10 +22,13 @@ export const structs = {
   mesh: struct(`size size; pointer positions; size position_count position_stride; pointer indices;
     size index_count index_bytes; pointer normals; size normal_stride; pointer texcoords;
     size texcoord_count texcoord_stride; pointer texcoord_indices materials seams triangle_density; f32 density;
-    pointer polygon_sizes; size polygon_count`),
+    pointer polygon_sizes; size polygon_count; pointer seam_weights`),
   unwrap_options: struct(`size size; f64 max_stretch cone_degrees crease_degrees min_fill uv_aspect texels_per_unit;
     u32 pages; i32 page_size padding mip_levels alignment charts packing split_at_materials keep_uvs allow_rotation
-    square part_gaps`),
+    square part_gaps; pointer like; f64 seam_weight`),
+  earlier_uvs: struct(`size size; pointer positions; size position_count position_stride; pointer indices;
+    size index_count index_bytes; pointer uvs; size uv_count uv_stride; pointer uv_indices triangle_page pages;
+    size page_count; f64 tolerance; pointer objects`),
   atlas_info: struct(`size size mesh_count chart_count page_count; pointer pages; f64 texels_per_unit utilization
     stretch_l2 stretch_999 stretch_max conformal_mean seam_length surface_area; u64 flipped_triangles thin_triangles
     texels_drawn_twice kept_charts reflattened_charts`),
@@ -34,7 +37,7 @@ export const structs = {
     pointer cut_polygons`),
   instances: struct("size size instance_count; pointer instances"),
   charts: struct(`size size chart_count; pointer mesh page material triangle_count kept area stretch_l2 stretch_999
-    stretch_max`),
+    stretch_max origins`),
   transfer_options: struct("size size; u32 page; i32 shifts"),
   pack_options: struct(`size size; i32 page_width page_height; u32 max_pages; i32 allow_rotation padding border
     alignment crop power_of_two square preset; f64 time_budget; u64 effort seed`),

@@ -71,6 +71,27 @@ test("given uvs are kept", () => {
   assert.equal(atlas.unwrap({ ...mesh, ...texcoords }).keptCharts, 0);
 });
 
+test("charts stay like those of an earlier result, and what was edited is named", () => {
+  const { meshes: [before], pages } = atlas.unwrap(mesh), removed = 3 * 1500;
+  const { uvs, indices: uvIndices, trianglePage } = before;
+  const like = { ...mesh, uvs, uvIndices, trianglePage, pages };
+  const indices = mesh.indices.filter((_, i) => i < removed || i >= removed + 3);
+  const { meshes: [now], charts } = atlas.unwrap({ ...mesh, indices }, { like });
+  now.indices.forEach((v, i) => {
+    const was = before.indices[i < removed ? i : i + 3];
+    for (const k of [0, 1]) assert.equal(now.uvs[2 * v + k], before.uvs[2 * was + k]);
+  });
+  assert.deepEqual([...charts.origins].sort(), [1, ...Array(charts.origins.length - 1).fill(2)]);
+  assert.equal(atlas.unwrap(mesh).charts.origins.length, 0);
+  const refused = (wrong, message) =>
+    assert.throws(() => atlas.unwrap(mesh, { like: { ...like, ...wrong } }), { name: "BadInputError", message });
+  refused({ uvIndices: [0, 1, 2] }, /^like: uvIndices has 3 numbers instead of/);
+  refused({ trianglePage: [0] }, /^like: trianglePage has 1 numbers/);
+  refused({ positions: null }, /^like: positions are missing/);
+  refused({ pages: [] }, /no page/);
+  refused({ positions: Float32Array.from(mesh.positions).fill(NaN, 15, 16) }, /position 5 is not finite/);
+});
+
 test("edges that are marked become seams, and seams are returned", () => {
   const flat = { positions: [0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0], indices: [0, 1, 2, 0, 2, 3] };
   const { chartCount, meshes: [whole] } = atlas.unwrap(flat, { seams: true });

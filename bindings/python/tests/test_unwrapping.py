@@ -74,6 +74,33 @@ def test_marked_seams_are_seams():
     assert (result.seams | ~marked).all() and not (free | ~marked).all()
 
 
+def test_seams_keep_away_from_high_weights():
+    vertices, faces = torus(60, 30)
+    heavy = vertices[:, 0] > 0
+    ends = vertices[faces], vertices[np.roll(faces, -1, 1)]
+    length, side = np.linalg.norm(ends[0] - ends[1], axis=2), ends[0][..., 0] + ends[1][..., 0] > 0
+
+    def seams(weights):
+        marked = libatlas.unwrap(vertices, faces, seam_weights=weights).seams
+        return (length * (marked & side)).sum(), (length * (marked & ~side)).sum()
+
+    free, (there, elsewhere) = seams(None), seams(np.where(heavy, 10, 1))
+    assert there < 0.7 * free[0] and there < 0.65 * elsewhere
+    with pytest.raises(libatlas.InputError, match="vertex 0: seam weight -1"):
+        seams(-np.ones(len(vertices)))
+    with pytest.raises(libatlas.InputError, match="seam_weights: shape"):
+        seams(np.ones(3))
+
+
+def test_seams_are_weighed_against_stretch():
+    few, usual = (libatlas.unwrap(*torus(60, 30), seam_weight=weight) for weight in (5, 1))
+    assert len(few.charts) < len(usual.charts)
+    assert few.distortion.seam_length < usual.distortion.seam_length
+    assert few.distortion.stretch_l2 > usual.distortion.stretch_l2
+    with pytest.raises(libatlas.OptionError, match="seam_weight is -1"):
+        libatlas.unwrap(*torus(), seam_weight=-1)
+
+
 def test_materials_divide_charts():
     vertices, faces = terrain()
     materials = np.arange(len(faces)) // 500

@@ -177,7 +177,8 @@ class EdgePaths {
         0.5 * (1 - glm::dot(to_dvec(topology_.normals[s]), to_dvec(topology_.normals[t])));
     const double plain = glm::distance(point(from(h)), point(from(next_half_edge(h)))) /
                          (1 + kCreaseDiscount * fold);
-    const double detour = (inner ? kPolygonDetour : 1) * (avoided(h) ? kDetour : 1);
+    const double detour = topology_.seam_weight(whole_half_edge(chart_, h)) *
+                          (inner ? kPolygonDetour : 1) * (avoided(h) ? kDetour : 1);
     return std::round(detour * plain / step_);
   }
 

@@ -36,7 +36,7 @@ bool keep_longest_run(const CoarseMesh& mesh, std::span<const Vec3d> forks,
     }
   }
   std::vector<double> length(n, 0);
-  for (std::size_t i = 0; i < n; ++i) length[find(i)] += mesh.arcs[glue[i]].length;
+  for (std::size_t i = 0; i < n; ++i) length[find(i)] += mesh.arcs[glue[i]].weight;
   std::size_t best = 0;
   for (std::size_t i = 1; i < n; ++i) {
     if (length[i] > length[best] * (1 + kSameLength)) best = i;

@@ -337,6 +337,11 @@ CanonicalMesh canonical_mesh(const MeshView& input, const WeldedVertices& welded
   mesh.texcoord_indices = per_corner(input.texcoord_indices, mesh);
   mesh.seams = per_corner(input.seams, mesh);
   mesh.polygons = per_triangle(input.polygons, mesh);
+  if (!input.seam_weights.empty()) mesh.seam_weights.assign(mesh.places.points.size(), 0);
+  for (std::uint32_t c = 0; !input.seam_weights.empty() && c < mesh.indices.size(); ++c) {
+    float& own = mesh.seam_weights[mesh.indices[c]];
+    own = std::max(own, input.seam_weights[input.indices[mesh.input_corner(c)]]);
+  }
   return mesh;
 }
 

@@ -22,10 +22,12 @@ struct CanonicalMesh {
   std::vector<float> density;
   std::vector<std::uint8_t> seams;
   std::vector<std::uint32_t> polygons;
+  std::vector<float> seam_weights;  // one per place
 
   // Without positions, which are those of the places.
   MeshView view(std::span<const Vec2f> texcoords) const {
-    return {{}, indices, materials, density, texcoords, texcoord_indices, seams, {}, polygons};
+    return {{},    indices, materials, density,     texcoords, texcoord_indices,
+            seams, {},      polygons,  seam_weights};
   }
   std::uint32_t input_triangle(std::uint32_t t) const { return first_corner[t] / 3; }
   std::uint32_t input_corner(std::uint32_t corner) const {

@@ -62,6 +62,7 @@ void PieceCutter::add_corners(std::uint32_t first_triangle, std::uint32_t first_
         name = static_cast<std::uint32_t>(t.points.size());
         t.points.push_back(whole_.points[v]);
         t.source_vertex.push_back(v);
+        if (!whole_.seam_weights.empty()) t.seam_weights.push_back(whole_.seam_weights[v]);
       }
       t.corner_vertex.push_back(name);
       const std::uint32_t o = whole_.opposite[h];

@@ -61,6 +61,15 @@ Status check_input(const MeshView& mesh) {
   if (!mesh.polygons.empty() && mesh.polygons.size() != n / 3) {
     return {ErrorCode::bad_input, "mesh: polygons must be empty or 1 a triangle"};
   }
+  if (!mesh.seam_weights.empty() && mesh.seam_weights.size() != mesh.positions.size()) {
+    return {ErrorCode::bad_input, "mesh: seam weights must be empty or 1 a position"};
+  }
+  for (std::size_t v = 0; v < mesh.seam_weights.size(); ++v) {
+    const float weight = mesh.seam_weights[v];
+    if (weight >= 0 && std::isfinite(weight)) continue;
+    return {ErrorCode::bad_input,
+            fmt::format("position {}: seam weight {} (must be at least 0 and finite)", v, weight)};
+  }
   for (std::size_t t = 0; t < mesh.density.size(); ++t) {
     if (mesh.density[t] > 0 && std::isfinite(mesh.density[t])) continue;
     return {
@@ -90,6 +99,11 @@ void take_vertices(const MeshView& mesh, WeldedVertices welded, Topology& topolo
   for (std::size_t i = 0; i < mesh.indices.size(); ++i) {
     const std::uint32_t v = mesh.indices[i];
     topology.corner_vertex[i] = welded.place.empty() ? v : welded.place[v];
+  }
+  if (!mesh.seam_weights.empty()) topology.seam_weights.assign(topology.points.size(), 0);
+  for (std::size_t i = 0; !mesh.seam_weights.empty() && i < mesh.indices.size(); ++i) {
+    float& own = topology.seam_weights[topology.corner_vertex[i]];
+    own = std::max(own, mesh.seam_weights[mesh.indices[i]]);
   }
   // In double, since the scale of a mesh of denormal numbers is beyond float.
   const double scale = topology.scale;

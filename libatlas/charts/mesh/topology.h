@@ -44,6 +44,7 @@ struct Topology {
   std::uint32_t component_count = 0;
   // One per triangle: equal for those of one polygon; empty without polygons.
   std::vector<std::uint32_t> polygon;
+  std::vector<float> seam_weights;  // one per vertex; empty: all are 1
   // The number of triangles of the mesh that this is a part of; 0: this is the whole mesh.
   std::size_t whole_triangles = 0;
   // The length of edges that exactly two triangles share without a link, in input units.
@@ -64,6 +65,12 @@ struct Topology {
   bool inner(std::uint32_t h) const {
     return !polygon.empty() && opposite[h] != kNoIndex &&
            polygon[h / 3] == polygon[opposite[h] / 3];
+  }
+  // What a seam along h counts, as a multiple of its length: MeshView::seam_weights.
+  double seam_weight(std::uint32_t h) const {
+    if (seam_weights.empty()) return 1;
+    return 0.5 * (double{seam_weights[corner_vertex[h]]} +
+                  double{seam_weights[corner_vertex[next_half_edge(h)]]});
   }
   // Returns the corner of the input triangle that working corner h corresponds to.
   std::uint32_t input_corner(std::uint32_t h) const {

@@ -101,7 +101,7 @@ class Smoother {
 
 double border_weight(const Topology& topology, std::uint32_t h, double crease_angle) {
   const std::uint32_t o = topology.opposite[h];
-  const double length = edge_length(topology, h);
+  const double length = topology.seam_weight(h) * edge_length(topology, h);
   if (topology.inner(h)) return kInnerWeight * length;
   const double cosine =
       glm::dot(to_dvec(topology.calm_normal(h / 3)), to_dvec(topology.calm_normal(o / 3)));

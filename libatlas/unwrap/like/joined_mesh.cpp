@@ -23,7 +23,10 @@ JoinedMesh join_triangles(std::span<const Vec3f> positions, std::span<const std:
                           std::span<const std::uint32_t> objects) {
   WeldedVertices welded =
       weld_vertices(positions, used_vertices(indices, positions.size()), objects);
-  JoinedMesh mesh{std::move(welded.points), {}, {}};
+  JoinedMesh mesh;
+  mesh.points = std::move(welded.points);
+  for (std::size_t p = 0; !objects.empty() && p < welded.source.size(); ++p)
+    mesh.objects.push_back(objects[welded.source[p]]);
   mesh.corners.reserve(indices.size());
   for (const std::uint32_t v : indices) mesh.corners.push_back(welded.place[v]);
   std::vector<EdgeSide> sides;

@@ -12,6 +12,7 @@ namespace atlas {
 
 struct JoinedMesh {
   std::vector<Vec3f> points = {};           // one per place
+  std::vector<std::uint32_t> objects = {};  // one per place, or empty
   std::vector<std::uint32_t> corners = {};  // three per triangle: the place of each
   // One per half-edge: the half-edge of the one other triangle that has this edge, or kNoIndex.
   std::vector<std::uint32_t> across = {};

@@ -4,6 +4,7 @@
 #include <array>
 #include <functional>
 #include <glm/geometric.hpp>
+#include <map>
 #include <tuple>
 #include <utility>
 
@@ -63,17 +64,34 @@ class Matcher {
     return glm::dot(d, d);
   }
 
-  // Each place takes the nearest earlier one, and each earlier one keeps the nearest of those.
   void match_places() {
-    const NearestPoint nearest(earlier_.points);
-    for (std::uint32_t p = 0; p < place_of_.size(); ++p) {
+    struct Object {
+      std::vector<std::uint32_t> places = {}, earlier = {};
+    };
+    std::map<std::uint32_t, Object> objects;
+    const bool apart = !mesh_.objects.empty() && !earlier_.objects.empty();
+    for (std::uint32_t p = 0; p < place_of_.size(); ++p)
+      objects[apart ? mesh_.objects[p] : 0].places.push_back(p);
+    for (std::uint32_t p = 0; p < owner_.size(); ++p)
+      objects[apart ? earlier_.objects[p] : 0].earlier.push_back(p);
+    for (const auto& [number, object] : objects) match_places(object.places, object.earlier);
+  }
+
+  // Each place takes the nearest earlier one, and each earlier one keeps the nearest of those.
+  void match_places(const std::vector<std::uint32_t>& places,
+                    const std::vector<std::uint32_t>& earlier) {
+    std::vector<Vec3f> points;
+    for (const std::uint32_t p : earlier) points.push_back(earlier_.points[p]);
+    const NearestPoint nearest(points);
+    for (const std::uint32_t p : places) {
       const auto found = nearest.find(mesh_.points[p], squared_);
       if (found.id == kNoIndex) continue;
-      std::uint32_t& owner = owner_[found.id];
-      if (owner != kNoIndex && distance(owner, found.id) <= found.squared) continue;
+      const std::uint32_t was = earlier[found.id];
+      std::uint32_t& owner = owner_[was];
+      if (owner != kNoIndex && distance(owner, was) <= found.squared) continue;
       if (owner != kNoIndex) place_of_[owner] = kNoIndex;
       owner = p;
-      place_of_[p] = found.id;
+      place_of_[p] = was;
     }
   }
 

@@ -18,7 +18,8 @@ struct TriangleMatch {
 };
 
 // Returns the match of each triangle; no two have the same. Corners match the nearest earlier ones
-// within `tolerance`, so numbers and orders do not matter. From triangles that match in this way,
+// within `tolerance`, of the same object if both meshes have objects, so numbers and orders do not
+// matter. From triangles that match in this way,
 // matches go on across edges, as long as both meshes are joined alike: triangles whose corners have
 // been moved farther are found so. O(n log n).
 std::vector<TriangleMatch> match_triangles(const JoinedMesh& mesh, const JoinedMesh& earlier,

@@ -63,6 +63,7 @@ TEST(ExportOptions, OfCharts) {
   EXPECT_EQ(plain.uv_aspect, std::nullopt);
   EXPECT_EQ(parsed({"--keep-uv-charts", "--uv-aspect", "4"}).uv_aspect, 4);
   EXPECT_EQ(parsed({"--min-fill", "0"}).options.charts.min_fill, 0);
+  EXPECT_EQ(parsed({"--seam-weight", "2"}).options.charts.seam_weight, 2);
   EXPECT_EQ(parsed({"--like", "old.obj"}).like, "old.obj");
   EXPECT_EQ(parsed({"--seams", "cut.obj"}).seams, "cut.obj");
   EXPECT_TRUE(parsed({"--square"}).options.square_plain_page);

@@ -8,11 +8,12 @@
 1 over their page with the origin at the bottom left, and sizes of pages are in texels.
 """
 
+from libatlas._earlier import EarlierUvs, earlier_uvs
 from libatlas._library import Progress, version
 from libatlas._options import IslandOptions, PackOptions, Preset, UnwrapOptions, lightmap_options
 from libatlas._packing import PackedIslands, PackedRects, pack_islands, pack_rects
 from libatlas._plotting import plot
-from libatlas._results import Charts, Distortion, Instances, UnwrappedAtlas, UnwrappedMesh
+from libatlas._results import ChartOrigin, Charts, Distortion, Instances, UnwrappedAtlas, UnwrappedMesh
 from libatlas._transferring import transfer
 from libatlas._unwrapping import Atlas, unwrap
 from libatlas.errors import (
@@ -31,8 +32,10 @@ __version__ = version()
 __all__ = [
     "Atlas",
     "CancelledError",
+    "ChartOrigin",
     "Charts",
     "Distortion",
+    "EarlierUvs",
     "Error",
     "InputError",
     "Instances",
@@ -51,6 +54,7 @@ __all__ = [
     "UnwrapOptions",
     "UnwrappedAtlas",
     "UnwrappedMesh",
+    "earlier_uvs",
     "lightmap_options",
     "pack_islands",
     "pack_rects",

@@ -38,6 +38,7 @@ _TAKES: dict[str, list[Any]] = {
     "atlas_destroy": [c_void_p],
     "add_mesh": [c_void_p, c_void_p, POINTER(structs.Mesh), POINTER(c_uint32)],
     "add_instances": [c_void_p, c_void_p, POINTER(structs.Mesh), c_void_p, c_size_t, POINTER(c_uint32)],
+    "earlier_uvs_init": [POINTER(structs.EarlierUvs), c_size_t],
     "unwrap_options_init": [POINTER(structs.UnwrapOptions), c_size_t],
     "lightmap_options_init": [POINTER(structs.UnwrapOptions), c_size_t, c_double, c_double],
     "unwrap": [c_void_p, c_void_p, POINTER(structs.UnwrapOptions), _OUT],

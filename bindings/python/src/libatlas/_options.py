@@ -4,12 +4,15 @@ from __future__ import annotations
 
 import ctypes
 import operator
-from typing import Any, Literal, TypedDict
+from typing import TYPE_CHECKING, Any, Literal, TypedDict
 
 from libatlas._library import library
 from libatlas._structs import Extent
 from libatlas._structs import UnwrapOptions as _UnwrapOptions
 from libatlas.errors import BY_STATUS, OptionError
+
+if TYPE_CHECKING:
+    from libatlas._earlier import EarlierUvs
 
 Preset = Literal["fast", "standard", "best"]
 _PRESETS = {"fast": 0, "standard": 1, "best": 2}
@@ -42,6 +45,8 @@ class UnwrapOptions(TypedDict, total=False):
     allow_rotation: bool  #: turn charts to pack better; default True
     square: bool  #: sides are equal and powers of two; default False
     part_gaps: bool  #: keep parts of one chart apart, as lightmaps need; default False
+    like: EarlierUvs | None  #: charts, uvs and places of this stay wherever triangles are unchanged; not with keep_uvs
+    seam_weight: float  #: what seams count beside stretch, 0.001..1000: more gives fewer charts; default 1
 
 
 class PackOptions(TypedDict, total=False):
@@ -94,6 +99,11 @@ def convert(name: str, value: Any, kind: Any) -> Any:
         except (TypeError, ValueError):
             raise TypeError(f"{name}: {value!r} is no pair of width and height") from None
         return Extent(*(_integer(name, side, ctypes.c_int32) for side in (width, height)))
+    if kind is ctypes.c_void_p:  # like
+        struct = getattr(value, "_struct", None)
+        if value is not None and struct is None:
+            raise TypeError(f"{name}: {value!r} are no EarlierUvs")
+        return None if struct is None else ctypes.addressof(struct)
     if name in _PRESET_NAMES:
         if isinstance(value, str) and value in _PRESETS:
             return _PRESETS[value]

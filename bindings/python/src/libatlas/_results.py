@@ -5,6 +5,7 @@ from __future__ import annotations
 import ctypes
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from enum import IntEnum
 from typing import TYPE_CHECKING, Any, overload
 
 import numpy as np
@@ -16,6 +17,14 @@ from libatlas._library import Context, Handle
 
 if TYPE_CHECKING:
     from libatlas._unwrapping import Atlas
+
+
+class ChartOrigin(IntEnum):
+    """What a chart has of the uvs of `like`."""
+
+    MADE = 0  #: nothing: it is new, or has been moved
+    REPAIRED = 1  #: unchanged triangles lie where they lay; others were lost, or have been laid beside
+    KEPT = 2  #: all that it had, at its place: its texels need not be made again
 
 
 @dataclass(frozen=True)
@@ -31,6 +40,8 @@ class Charts:
     stretch_l2: npt.NDArray[np.float64]  #: as in `Distortion`
     stretch_999: npt.NDArray[np.float64]
     stretch_max: npt.NDArray[np.float64]
+    #: `ChartOrigin` of each; empty if nothing of `like` was found again.
+    origins: npt.NDArray[np.uint8]
 
     def __len__(self) -> int:
         return len(self.mesh)
@@ -181,11 +192,11 @@ class UnwrappedAtlas(Sequence[UnwrappedMesh]):
     def _read_charts(self) -> Charts:
         c = structs.Charts(size=ctypes.sizeof(structs.Charts))
         Context().call("get_charts", self._handle.pointer, c)
-        kinds = dict(mesh="u4", page="u4", material="u4", triangle_count="u4", kept="?")
-        columns = {
-            name: arrays.view(getattr(c, name), (c.chart_count,), kinds.get(name, "f8"), self._handle)
-            for name in Charts.__annotations__
-        }
+        kinds = dict(mesh="u4", page="u4", material="u4", triangle_count="u4", kept="?", origins="u1")
+        columns = {}
+        for name in Charts.__annotations__:
+            place = getattr(c, name)
+            columns[name] = arrays.view(place, (c.chart_count if place else 0,), kinds.get(name, "f8"), self._handle)
         return Charts(**columns)
 
     def _seams(self, index: int, shape: tuple[int, ...]) -> npt.NDArray[np.bool_]:

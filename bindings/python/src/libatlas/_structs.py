@@ -33,6 +33,28 @@ class Mesh(ctypes.Structure):
         ("density", c_float),
         ("polygon_sizes", c_void_p),
         ("polygon_count", c_size_t),
+        ("seam_weights", c_void_p),
+    ]
+
+
+class EarlierUvs(ctypes.Structure):
+    _fields_ = [
+        ("size", c_size_t),
+        ("positions", c_void_p),
+        ("position_count", c_size_t),
+        ("position_stride", c_size_t),
+        ("indices", c_void_p),
+        ("index_count", c_size_t),
+        ("index_bytes", c_size_t),
+        ("uvs", c_void_p),
+        ("uv_count", c_size_t),
+        ("uv_stride", c_size_t),
+        ("uv_indices", c_void_p),
+        ("triangle_page", c_void_p),
+        ("pages", c_void_p),
+        ("page_count", c_size_t),
+        ("tolerance", c_double),
+        ("objects", c_void_p),
     ]
 
 
@@ -57,6 +79,8 @@ class UnwrapOptions(ctypes.Structure):
         ("allow_rotation", c_int32),
         ("square", c_int32),
         ("part_gaps", c_int32),
+        ("like", c_void_p),
+        ("seam_weight", c_double),
     ]
 
 
@@ -129,6 +153,7 @@ class Charts(ctypes.Structure):
         ("stretch_l2", c_void_p),
         ("stretch_999", c_void_p),
         ("stretch_max", c_void_p),
+        ("origins", c_void_p),
     ]
 
 
@@ -223,6 +248,7 @@ PLACEMENT = np.dtype([("page", "<u4"), ("x", "<i4"), ("y", "<i4"), ("rotated", "
 STRUCTS: dict[str, type[ctypes.Structure]] = {
     "libatlas_extent": Extent,
     "libatlas_mesh": Mesh,
+    "libatlas_earlier_uvs": EarlierUvs,
     "libatlas_unwrap_options": UnwrapOptions,
     "libatlas_atlas_info": AtlasInfo,
     "libatlas_mesh_uvs": MeshUvs,

@@ -49,6 +49,7 @@ class Atlas:
         uv_faces: npt.ArrayLike | None = None,
         materials: npt.ArrayLike | None = None,
         seams: npt.ArrayLike | None = None,
+        seam_weights: npt.ArrayLike | None = None,
         triangle_density: npt.ArrayLike | None = None,
         density: float = 1,
         instances: npt.ArrayLike | None = None,
@@ -67,6 +68,8 @@ class Atlas:
             materials: (F,) integers.
             seams: one a corner, in the shape of `faces`: true if the edge from that corner to the next is a seam,
                 across which no chart continues. Either side may say so.
+            seam_weights: (V,) floats, at least 0: a seam along an edge counts its length times the mean of its ends'
+                weights, so that seams keep away from high ones; default 1.
             triangle_density: (F,) floats > 0: relative texel density, times `density`.
             density: relative linear texel density of the mesh, finite and > 0.
             instances: (N,) floats > 0, at least one: the mesh is shown N times. It is unwrapped once, and each instance
@@ -94,6 +97,9 @@ class Atlas:
         if seams is not None:
             keep.append(polygons.of_corners(arrays.flags(arrays.flat(seams), "seams"), "seams"))
             mesh.seams = keep[-1].ctypes.data
+        if seam_weights is not None:
+            keep.append(arrays.floats(seam_weights, (mesh.position_count,), "seam_weights"))
+            mesh.seam_weights = keep[-1].ctypes.data
         if triangle_density is not None:
             keep.append(arrays.floats(triangle_density, (polygons.count,), "triangle_density"))
             mesh.triangle_density = keep[-1].ctypes.data
@@ -128,7 +134,7 @@ class Atlas:
             options: those of `UnwrapOptions`.
 
         Raises:
-            InputError: there is no mesh.
+            InputError: there is no mesh, or something of `like` is not usable.
             OptionError: an option is out of range.
             NoSolutionError: there are more charts than the pages hold texels for.
             TypeError: there is no such option, or it has the wrong type.
@@ -138,7 +144,7 @@ class Atlas:
         _options.fill(c, dict(options), "unwrap")
         handle = Handle("unwrapped")
         with self._lock:
-            context.run("unwrap", self._handle.pointer, c, handle.out, keep=(self, handle))
+            context.run("unwrap", self._handle.pointer, c, handle.out, keep=(self, handle, options))
         return UnwrappedAtlas(handle, self)
 
 
@@ -178,6 +184,7 @@ def unwrap(
     uv_faces: npt.ArrayLike | None = None,
     materials: npt.ArrayLike | None = None,
     seams: npt.ArrayLike | None = None,
+    seam_weights: npt.ArrayLike | None = None,
     triangle_density: npt.ArrayLike | None = None,
     threads: int = 0,
     progress: Progress | None = None,
@@ -202,6 +209,7 @@ def unwrap(
         uv_faces=uv_faces,
         materials=materials,
         seams=seams,
+        seam_weights=seam_weights,
         triangle_density=triangle_density,
     )
     return atlas.unwrap(threads=threads, progress=progress, **options)[0]
