@@ -32,7 +32,7 @@ std::vector<PieceCost> piece_costs(const Cut& cut) {
   for (std::size_t i = 0; i < cut.coarse.arcs.size(); ++i) {
     const CoarseArc& arc = cut.coarse.arcs[i];
     if (arc.cell[1] == kNoIndex || cut.merged.joined[i]) continue;
-    if (piece[arc.cell[0]] != kNoIndex) costs[piece[arc.cell[0]]].seams += arc.weighted;
+    if (piece[arc.cell[0]] != kNoIndex) costs[piece[arc.cell[0]]].seams += arc.weight;
   }
   return costs;
 }
