@@ -11,6 +11,7 @@
 #include "libatlas/pipeline/longest_sides.h"
 #include "libatlas/pipeline/more_mip_levels.h"
 #include "libatlas/unwrap/fill_pages.h"
+#include "libatlas/unwrap/own_scales.h"
 #include "libatlas/unwrap/part_gaps.h"
 
 namespace atlas {
@@ -88,10 +89,12 @@ Result<PageLayout> lay_out_plain(ExportJob& job, const LayoutOptions& options, C
   const double texels = double(options.pages) * options.page_size * options.page_size;
   double density = filling_density(charts, texels);
   if (asked > 0) density = std::min(density, job.scene.metres_per_unit / asked);
-  const PlainUvs uvs{view_of(job.scene), job.options.charts, density};
+  const PlainUvs uvs{view_of(job.scene), job.options.charts, density, asked > 0};
   Result<PageLayout> layout = fill_plain(job, uvs, options, charts, context);
   if (!layout.ok()) return layout;
   report_charts(charts, job.report);
+  job.report.own_scales = layout->own_scales;
+  if (!layout->own_scales.empty()) job.report.advice.push_back(own_scales_text(charts, *layout));
   if (Status s = check_density(job, uvs, *layout); !s.ok()) return s;
   if (asked > 0) job.report.texel = job.report.packed_texel = asked / job.scene.metres_per_unit;
   return layout;

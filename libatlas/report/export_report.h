@@ -110,6 +110,7 @@ struct ExportReport {
   // they hold beyond the common scale. With baked light.
   double least_side_share = 0;
   bool outlines = false;
+  std::vector<std::uint32_t> own_scales = {};  // as in PageLayout
   // Triangles written that rounding the uvs to floats turns over or leaves no area.
   std::uint64_t thin_triangles = 0;
   std::uint64_t cut_polygons = 0;  // faces that are written as triangles, since seams cut them

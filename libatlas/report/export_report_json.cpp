@@ -225,7 +225,8 @@ Json pages_json(const ExportReport& r) {
                {"utilization", r.utilization},
                {"uv_utilization", r.uv_utilization},
                {"least_side_share", r.least_side_share},
-               {"opened_charts", r.opened_charts}};
+               {"opened_charts", r.opened_charts},
+               {"own_scales", r.own_scales}};
   if (r.gaps) {
     packing["border_texels"] = r.gaps->border;
     packing["shared_border_texels"] = r.gaps->near_after;

@@ -11,6 +11,7 @@
 #include "libatlas/pack/fitting/fit_search.h"
 #include "libatlas/unwrap/layout_effort.h"
 #include "libatlas/unwrap/least_room.h"
+#include "libatlas/unwrap/own_scales.h"
 
 namespace atlas {
 namespace {
@@ -48,7 +49,8 @@ constexpr double kLeastGain = 0.1, kLeastGainSeveral = 0.05, kSeamPrice = 0.06, 
 constexpr double kMostPressed = 1.15;
 constexpr int kMostVain = 2;
 constexpr std::size_t kFewAPage = 16;
-// Several pages that are filled to less are laid out once more as fewer pages.
+// Several pages that are filled to less are laid out once more as fewer pages. Pages that would
+// otherwise be filled to less are filled to more by scales of their own for the longest charts.
 constexpr double kPoor = 0.5;
 
 // Tells how well layouts fill the pages that may be used.
@@ -97,6 +99,7 @@ struct Way {
   ChartSet charts;
   WorkedLayout layout;
   bool pressed = false, worked = false;
+  std::vector<double> own_scales = {};  // one per chart, or empty: all have the common scale
 };
 
 class PageFiller {
@@ -115,18 +118,23 @@ class PageFiller {
 
   // Replaces the charts by those that are laid out.
   Result<PageLayout> run(ChartSet& charts) {
-    Result<WorkedLayout> first = lay_out(charts, unpressed_);
+    Way best{charts, {}};
+    Result<WorkedLayout> first = lay_out(best, unpressed_);
     if (!first.ok()) return first.status();
-    Way best{charts, std::move(*first)};
+    best.layout = std::move(*first);
     if (may_cut(charts) && !goal_.reached(best.layout)) {
       if (Status s = press(best, options_, kFilledFree); !s.ok()) return s;
       if (!goal_.reached(best.layout)) {
         if (Status s = cut(charts, best); !s.ok()) return s;
       }
     }
+    if (Status s = scale_longest(best); !s.ok()) return s;
     if (Status s = press(best, options_, 0); !s.ok()) return s;
     charts = std::move(best.charts);
-    return PageLayout(std::move(best.layout));
+    PageLayout layout(std::move(best.layout));
+    for (std::uint32_t c = 0; c < best.own_scales.size(); ++c)
+      if (best.own_scales[c] < 1) layout.own_scales.push_back(c);
+    return layout;
   }
 
  private:
@@ -138,19 +146,31 @@ class PageFiller {
     return part_of_stage(context_, "packing", (parts_ + from) / kParts, (parts_ + to) / kParts);
   }
 
-  std::vector<Vec2d> densities(const ChartSet& charts) const {
-    return std::vector<Vec2d>(charts.charts.size(), Vec2d{uvs_.density, uvs_.density});
+  // Returns the densities of charts, which fill the pages without gaps as those of one scale do.
+  std::vector<Vec2d> densities(const Way& way) const {
+    std::vector<Vec2d> densities(way.charts.charts.size(), Vec2d{uvs_.density, uvs_.density});
+    double whole = 0, scaled = 0;
+    for (std::size_t c = 0; c < way.own_scales.size(); ++c) {
+      const double area = way.charts.charts[c].distortion.uv_area;
+      whole += area;
+      scaled += area * way.own_scales[c] * way.own_scales[c];
+    }
+    for (std::size_t c = 0; c < way.own_scales.size(); ++c) {
+      const double own = way.own_scales[c] * std::sqrt(whole / scaled);
+      densities[c] = {own * uvs_.density, own * uvs_.density};
+    }
+    return densities;
   }
 
-  Result<WorkedLayout> lay_out(const ChartSet& charts, const LayoutEffort& options) const {
-    return lay_out_charts({charts, densities(charts)}, options, part(0, kLaidOut));
+  Result<WorkedLayout> lay_out(const Way& way, const LayoutEffort& options) const {
+    return lay_out_charts({way.charts, densities(way)}, options, part(0, kLaidOut));
   }
 
   // Lays out pieces with as much work as the whole charts, which so many are.
   Status lay_out_fully(Way& way, std::size_t whole, double wanted) const {
     LayoutEffort effort = with_work_of(whole, 1, way);
     effort.wanted_fill = wanted;
-    Result<WorkedLayout> fuller = lay_out(way.charts, effort);
+    Result<WorkedLayout> fuller = lay_out(way, effort);
     if (fuller.ok() && goal_.covered(*fuller) > goal_.covered(way.layout))
       way.layout = std::move(*fuller);
     way.worked = true;
@@ -171,7 +191,7 @@ class PageFiller {
         kMostPressed * goal_.covered(way.layout) < wanted) {
       return {};
     }
-    const std::vector<Vec2d> wanted_densities = densities(way.charts);
+    const std::vector<Vec2d> wanted_densities = densities(way);
     Result<WorkedLayout> pressed =
         press_layout({way.charts, wanted_densities}, options, way.layout, part(kLaidOut, 1));
     if (!pressed.ok()) return pressed.status();
@@ -180,9 +200,9 @@ class PageFiller {
     return {};
   }
 
+  bool cuts() const { return uvs_.options.min_fill > 0 && !uvs_.options.keep_uv_charts; }
   bool may_cut(const ChartSet& charts) const {
-    return uvs_.options.min_fill > 0 && !uvs_.options.keep_uv_charts &&
-           (!options_.free_aspect || charts.charts.size() <= kMostChartsFree);
+    return cuts() && (!options_.free_aspect || charts.charts.size() <= kMostChartsFree);
   }
 
   // Cuts charts ever shorter until the pages are full enough. `best` becomes the last way that is
@@ -210,7 +230,7 @@ class PageFiller {
       if (most_covered(way.charts, uvs_.density, options_) < wanted) continue;
       LayoutEffort further = with_work_of(whole.charts.size(), kOfTrial, way);
       further.wanted_fill = wanted;
-      Result<WorkedLayout> layout = lay_out(way.charts, further);
+      Result<WorkedLayout> layout = lay_out(way, further);
       if (!layout.ok() && layout.status().code() != ErrorCode::no_solution) return layout.status();
       // The gutters around the pieces take more room than there is, and those around smaller pieces
       // would take even more.
@@ -228,6 +248,20 @@ class PageFiller {
       best = std::move(way);
       if (goal_.reached(best.layout)) return {};
     }
+    return {};
+  }
+
+  // Gives charts that leave pages poorly filled, and cannot be cut, scales of their own.
+  Status scale_longest(Way& best) const {
+    const double enough = kPoor / best.layout.with_lost_room;
+    if (uvs_.asked || !cuts() || goal_.covered(best.layout) >= enough) return {};
+    Way scaled{best.charts, {}, false, false, own_scales(best.charts, options_.pages)};
+    if (scaled.own_scales.empty()) return {};
+    Result<WorkedLayout> layout = lay_out(scaled, unpressed_);
+    if (!layout.ok()) return context_.cancelled() ? layout.status() : Status();
+    scaled.layout = std::move(*layout);
+    if (goal_.covered(scaled.layout) < enough) return {};
+    best = std::move(scaled);
     return {};
   }
 
@@ -272,7 +306,7 @@ Status try_fewer_pages(const Whole& whole, PageLayout& layout, ChartSet& charts,
   Result<PageLayout> denser = PageFiller(whole.uvs, fewer, whole.charts, context).run(whole.charts);
   if (denser.status().code() == ErrorCode::no_solution) return {};
   if (!denser.ok()) return denser.status();
-  if (denser->scale <= layout.scale) return {};
+  if (common_density(*denser) <= common_density(layout)) return {};
   layout = std::move(*denser);
   charts = std::move(whole.charts);
   return {};

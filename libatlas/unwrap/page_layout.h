@@ -36,6 +36,9 @@ struct PageLayout {
   double utilization = 0;                       // as in FitResult
   double uv_utilization = 0;                    // area of the charts / area of the pages
   GroupingResult grouping = {};
+  // Charts of plain uvs that are longer than the page that all others fill, so that they have less
+  // than the common scale. Ascending.
+  std::vector<std::uint32_t> own_scales = {};
   // Only beside earlier uvs (like.h): what each chart has of them; and the uvs of the charts that
   // stay, one per uv of the charts, in texels of their page, NaN for the others.
   std::vector<ChartOrigin> origins = {};

@@ -1,8 +1,10 @@
 // Uvs without light on square and on several pages: long and large charts leave none of them empty.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
+#include <string>
 #include <string_view>
 #include <utility>
 
@@ -76,6 +78,36 @@ TEST(FillPages, AGivenDensityIsReachedOnAFullPage) {
   EXPECT_EQ(given.charts.charts.size(), largest.charts.charts.size());
   EXPECT_GT(given.utilization, largest.utilization - 0.1) << "gutters take more";
   EXPECT_LT(std::max(given.pages[0].width, given.pages[0].height), 2048 / 5);
+}
+
+// A strip of two triangles that is much longer than the page that the plate fills.
+TEST(FillPages, AStripThatCannotBeCutGetsAScaleOfItsOwn) {
+  const Shape shape = together(grid(9, 9, 1, 1), moved(grid(1, 1, 100, 0.001), 1, {0, 2, 0}));
+  for (const bool square : {false, true}) {
+    UnwrapOptions options{{.page_size = 512, .square = square}};
+    options.charts.min_fill = 0.72;
+    std::string said;
+    Context context;
+    context.warn = [&](std::string_view line) { said += line; };
+    auto scaled = unwrap_mesh(view_of(shape), options, context);
+    ASSERT_TRUE(scaled.ok()) << scaled.status().message();
+    EXPECT_GT(scaled->utilization, 0.6) << square;
+    const std::uint32_t strip = scaled->charts.triangle_chart.back();
+    for (const ChartPlacement& p : scaled->placements) {
+      const double share = p.texels_per_unit.x / scaled->texels_per_unit;
+      if (p.chart == strip)
+        EXPECT_LT(share, 0.02);
+      else
+        EXPECT_DOUBLE_EQ(share, 1);
+    }
+    EXPECT_NE(said.find(fmt::format("charts[{}] of 2 triangles", strip)), std::string::npos)
+        << said;
+
+    options.texels_per_unit = scaled->texels_per_unit;
+    const UnwrappedMesh asked = unwrap(shape, options);
+    for (const ChartPlacement& p : asked.placements)
+      EXPECT_DOUBLE_EQ(p.texels_per_unit.x, asked.texels_per_unit);
+  }
 }
 
 // A single sheet as large as four pages.
