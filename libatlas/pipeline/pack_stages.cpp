@@ -105,7 +105,6 @@ void report_layout(ExportJob& job, const ChartSet& charts, const PageLayout& lay
                    std::size_t uncut) {
   ExportReport& report = job.report;
   report.grouping = layout.grouping;
-  report.utilization = layout.utilization;
   report.uv_utilization = layout.uv_utilization;
   report.outlines = layout.outlines;
   report_placements(layout.placements, report);

@@ -222,7 +222,6 @@ Json pages_json(const ExportReport& r) {
   }
   Json packing{{"scale", r.scale},
                {"outlines", r.outlines},
-               {"utilization", r.utilization},
                {"uv_utilization", r.uv_utilization},
                {"least_side_share", r.least_side_share},
                {"opened_charts", r.opened_charts},

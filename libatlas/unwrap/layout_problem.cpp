@@ -123,7 +123,6 @@ WorkedLayout layout_of(FitResult fitted, const LayoutProblem& problem) {
   layout.outlines = options.outlines && !fitted.boxes;
   layout.scale = fitted.scale;
   layout.pages = std::move(fitted.pages);
-  layout.utilization = fitted.utilization;
   layout.grouping = std::move(fitted.grouping);
   layout.placements.resize(fitted.placements.size());
   for (std::size_t c = 0; c < fitted.placements.size(); ++c) {

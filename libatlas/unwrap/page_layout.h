@@ -33,7 +33,6 @@ struct PageLayout {
   std::vector<Extent> pages = {};               // texels
   bool outlines = false;                        // the charts were packed by outlines
   double scale = 1;                             // common to all densities
-  double utilization = 0;                       // as in FitResult
   double uv_utilization = 0;                    // area of the charts / area of the pages
   GroupingResult grouping = {};
   // Charts of plain uvs that are longer than the page that all others fill, so that they have less
