@@ -17,7 +17,7 @@
 namespace atlas {
 namespace {
 
-constexpr double kFirstLayout = 0.7;  // share of packing's progress
+constexpr double kFirstLayout = 0.7;  // share of packing's progress and time
 
 // Given charts keep their borders.
 Result<PageLayout> lay_out_lit(ExportJob& job, const LayoutOptions& options, SizedCharts& sized,
@@ -29,10 +29,13 @@ Result<PageLayout> lay_out_lit(ExportJob& job, const LayoutOptions& options, Siz
     report_charts(sized.charts, job.report);
   }
   const double first = job.options.more_mip_levels ? kFirstLayout : 1;
-  Result<PageLayout> layout = lay_out_pages(sized.charts, sized.densities, options,
+  LayoutOptions narrow = options, wider = options;
+  narrow.time_budget *= first;
+  wider.time_budget *= (1 - kFirstLayout) / kMostMipLevels;
+  Result<PageLayout> layout = lay_out_pages(sized.charts, sized.densities, narrow,
                                             part_of_stage(context, "packing", 0, first));
   if (!layout.ok() || !job.options.more_mip_levels) return layout;
-  Result<GuardedLayout> guarded = guard_more_levels({sized.charts, sized.densities}, options,
+  Result<GuardedLayout> guarded = guard_more_levels({sized.charts, sized.densities}, wider,
                                                     {std::move(*layout), job.options.mip_levels},
                                                     part_of_stage(context, "packing", first, 1));
   if (!guarded.ok()) return guarded.status();

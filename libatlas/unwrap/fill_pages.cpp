@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "libatlas/charts/tiles.h"
+#include "libatlas/core/clock.h"
 #include "libatlas/core/progress.h"
 #include "libatlas/pack/fitting/fit_search.h"
 #include "libatlas/unwrap/layout_effort.h"
@@ -107,13 +108,15 @@ class PageFiller {
   PageFiller(const PlainUvs& uvs, const LayoutOptions& options, const ChartSet& charts,
              const Context& context)
       : uvs_(uvs),
-        options_{options},
-        unpressed_{options},
+        options_(effort_of(options)),
+        unpressed_(options_),
         context_(context),
         goal_{options_, charts.distortion.uv_area * uvs.density * uvs.density} {
     // Several pages are pressed only if it may decide between ways, and at the end, because it
     // takes a second or more for each way.
     unpressed_.press_pages = false;
+    // A limited time is spent on the way that is chosen, and not on comparing them.
+    if (timed()) unpressed_.preset = PackPreset::standard;
   }
 
   // Replaces the charts by those that are laid out.
@@ -130,6 +133,12 @@ class PageFiller {
     }
     if (Status s = scale_longest(best); !s.ok()) return s;
     if (Status s = press(best, options_, 0); !s.ok()) return s;
+    if (timed() && !over()) {
+      Result<WorkedLayout> searched = lay_out(best, options_);
+      if (searched.ok() && goal_.covered(*searched) > goal_.covered(best.layout))
+        best.layout = std::move(*searched);
+      if (context_.cancelled()) return Status::cancelled();
+    }
     charts = std::move(best.charts);
     PageLayout layout(std::move(best.layout));
     for (std::uint32_t c = 0; c < best.own_scales.size(); ++c)
@@ -138,6 +147,14 @@ class PageFiller {
   }
 
  private:
+  static LayoutEffort effort_of(const LayoutOptions& options) {
+    LayoutEffort effort{options};
+    if (options.preset == PackPreset::best) effort.deadline = wall_seconds() + options.time_budget;
+    return effort;
+  }
+  bool timed() const { return std::isfinite(options_.deadline); }
+  bool over() const { return wall_seconds() >= options_.deadline; }
+
   static constexpr double kParts = 1 + kLongestSides.size();
 
   // Returns the context for a section of the current part. Each way of cutting is one part of the
@@ -214,6 +231,7 @@ class PageFiller {
     int vain = 0;
     for (const double longest : kLongestSides) {
       ++parts_;
+      if (over()) return {};
       const std::vector<double> limits(whole.charts.size(), longest * side);
       Way way{whole, {}};
       const Result<std::size_t> pieces =
@@ -254,7 +272,7 @@ class PageFiller {
   // Gives charts that leave pages poorly filled, and cannot be cut, scales of their own.
   Status scale_longest(Way& best) const {
     const double enough = kPoor / best.layout.with_lost_room;
-    if (uvs_.asked || !cuts() || goal_.covered(best.layout) >= enough) return {};
+    if (uvs_.asked || !cuts() || over() || goal_.covered(best.layout) >= enough) return {};
     Way scaled{best.charts, {}, false, false, own_scales(best.charts, options_.pages)};
     if (scaled.own_scales.empty()) return {};
     Result<WorkedLayout> layout = lay_out(scaled, unpressed_);
@@ -295,11 +313,12 @@ struct Whole {
 // longer than a page are not cut at all: eight pages of a hinge had longer texels than two.
 // Therefore lays poorly filled pages out again, as so few as could hold what they do. `layout` and
 // `charts` become the denser result.
-Status try_fewer_pages(const Whole& whole, PageLayout& layout, ChartSet& charts,
+Status try_fewer_pages(const Whole& whole, double left, PageLayout& layout, ChartSet& charts,
                        const Context& context) {
   const std::size_t count = layout.pages.size();
   if (count == whole.options.pages && layout.uv_utilization >= kPoor) return {};
   LayoutOptions fewer = whole.options;
+  fewer.time_budget = left;
   const double filled = layout.uv_utilization * double(count) / kFilledSeveral;
   fewer.pages = std::max(2u, std::uint32_t(std::ceil(filled)));
   if (fewer.pages >= whole.options.pages) return {};
@@ -316,13 +335,15 @@ Status try_fewer_pages(const Whole& whole, PageLayout& layout, ChartSet& charts,
 
 Result<PageLayout> fill_pages(const PlainUvs& uvs, const LayoutOptions& options, ChartSet& charts,
                               const Context& context) {
+  const double begun = wall_seconds();
   const Context stage = part_of_stage(context, "packing");  // an early way may be pressed last
   const bool may_cut = options.pages > 2 && uvs.options.min_fill > 0 && !uvs.options.keep_uv_charts;
   ChartSet whole;
   if (may_cut) whole = charts;
   Result<PageLayout> layout = PageFiller(uvs, options, charts, stage).run(charts);
   if (may_cut && layout.ok() && layout->scale < 1) {
-    if (Status s = try_fewer_pages({uvs, options, whole}, *layout, charts, stage); !s.ok())
+    const double left = std::max(0.0, options.time_budget - (wall_seconds() - begun));
+    if (Status s = try_fewer_pages({uvs, options, whole}, left, *layout, charts, stage); !s.ok())
       return s;
   }
   stage.report("packing", 1);

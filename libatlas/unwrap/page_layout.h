@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <string>
 #include <vector>
@@ -19,7 +20,10 @@ namespace atlas {
 // Page sides are powers of two unless free_aspect, which overrides `square` too.
 struct LayoutOptions : PageOptions {
   std::int32_t minimum_side = 16;  // scaling makes no side of a chart shorter, if it was longer
-  bool outlines = false;           // also try outlines, and use them if they pack better
+  // Wall time of PackPreset::best, seconds, at least 0. Infinite: a fixed effort, with which
+  // results repeat exactly.
+  double time_budget = std::numeric_limits<double>::infinity();
+  bool outlines = false;  // also try outlines, and use them if they pack better
   // Use one page whose sides are at most page_size, and make it as full as possible. This is for
   // uvs without images, where texels have no size.
   bool free_aspect = false;

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "libatlas/core/clock.h"
+#include "libatlas/unwrap/fill_pages.h"
 #include "libatlas/unwrap/unwrap.h"
 #include "tests/support/shape_view.h"
 #include "tests/support/slowness.h"
@@ -258,6 +259,36 @@ TEST(FillPages, ChartsWhosePiecesHaveNoRoomStayWhole) {
   for (const std::int32_t padding : {8, 12, 16}) {
     const UnwrapOptions wide{{.pages = 2, .page_size = 64, .padding = padding}};
     EXPECT_EQ(unwrap(grid(16, 16), wide).charts.charts.size(), 1u) << padding;
+  }
+}
+
+// The time is for all ways of cutting together, and never gives less than the default.
+TEST(FillPages, BestKeepsToItsTime) {
+  const Shape shape = together(torus(48, 24), moved(star_prism(10), 1, {3, 0, 0}));
+  Context one;
+  one.threads = 1;
+  for (const std::uint32_t pages : {1, 2}) {
+    double before = 0;
+    for (const double budget : {0.0, 0.3, 0.9}) {
+      LayoutOptions options{{.pages = pages, .page_size = 512, .square = true}};
+      options.minimum_side = 0;
+      options.outlines = true;
+      if (budget > 0) {
+        options.preset = PackPreset::best;
+        options.time_budget = budget;
+      }
+      auto charts = make_charts(view_of(shape), {}, one);
+      ASSERT_TRUE(charts.ok());
+      const double density = filling_density(*charts, 512.0 * 512 * pages);
+      const double begun = cpu_seconds();
+      const auto layout = fill_pages({view_of(shape), {}, density}, options, *charts, one);
+      const double spent = cpu_seconds() - begun;
+      ASSERT_TRUE(layout.ok()) << layout.status().message();
+      if (budget > 0) EXPECT_LE(spent, 1.2 * budget + kSlowness * 0.05) << pages;
+      if (budget > 0.5) EXPECT_GE(spent, 0.5 * budget) << pages;
+      if (budget != 0.3) EXPECT_GE(layout->scale, before) << pages << ' ' << budget;
+      before = std::max(before, layout->scale);
+    }
   }
 }
 
