@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <utility>
 #include <vector>
 
@@ -122,16 +123,8 @@ class PageFiller {
   // Replaces the charts by those that are laid out.
   Result<PageLayout> run(ChartSet& charts) {
     Way best{charts, {}};
-    Result<WorkedLayout> first = lay_out(best, unpressed_);
-    if (!first.ok()) return first.status();
-    best.layout = std::move(*first);
-    if (may_cut(charts) && !goal_.reached(best.layout)) {
-      if (Status s = press(best, options_, kFilledFree); !s.ok()) return s;
-      if (!goal_.reached(best.layout)) {
-        if (Status s = cut(charts, best); !s.ok()) return s;
-      }
-    }
-    if (Status s = scale_longest(best); !s.ok()) return s;
+    if (Status s = fill(charts, best); !s.ok()) return s;
+    if (Status s = scale_longest(charts, best); !s.ok()) return s;
     if (Status s = press(best, options_, 0); !s.ok()) return s;
     if (timed() && !over()) {
       Result<WorkedLayout> searched = lay_out(best, options_);
@@ -157,25 +150,61 @@ class PageFiller {
 
   static constexpr double kParts = 1 + kLongestSides.size();
 
+  // Lays out whole charts, and cuts them if they leave the pages too empty.
+  Status fill(const ChartSet& whole, Way& best) {
+    Result<WorkedLayout> first = lay_out(best, unpressed_);
+    if (!first.ok()) return first.status();
+    best.layout = std::move(*first);
+    if (!may_cut(best.charts) || goal_.reached(best.layout)) return {};
+    if (Status s = press(best, options_, kFilledFree); !s.ok()) return s;
+    return goal_.reached(best.layout) ? Status() : cut(whole, best);
+  }
+
+  // Gives charts that leave pages poorly filled, and cannot be cut, scales of their own.
+  Status scale_longest(const ChartSet& charts, Way& best) {
+    const double enough = kPoor / best.layout.with_lost_room;
+    if (uvs_.asked || !cuts() || over() || goal_.covered(best.layout) >= enough) return {};
+    Way scaled{charts, {}};
+    scaled.own_scales = own_scales(charts, options_.pages);
+    if (scaled.own_scales.empty()) return {};
+    context_.progress = nullptr;  // which must not begin anew
+    const Status filled = fill(charts, scaled);
+    if (context_.cancelled()) return Status::cancelled();
+    if (filled.ok() && goal_.covered(scaled.layout) >= enough) best = std::move(scaled);
+    return {};
+  }
+
   // Returns the context for a section of the current part. Each way of cutting is one part of the
   // stage.
   Context part(double from, double to) const {
     return part_of_stage(context_, "packing", (parts_ + from) / kParts, (parts_ + to) / kParts);
   }
 
+  static double scaled_area(const Way& way) {
+    double area = way.charts.distortion.uv_area;
+    for (std::size_t c = 0; c < way.own_scales.size(); ++c)
+      area -= (1 - way.own_scales[c] * way.own_scales[c]) * way.charts.charts[c].distortion.uv_area;
+    return area;
+  }
+
+  // Returns the scales of pieces, which are those of the charts that they were cut from.
+  static std::vector<double> of_pieces(const std::vector<double>& scales, const ChartSet& whole,
+                                       const ChartSet& pieces) {
+    std::vector<double> result;
+    for (const Chart& piece : pieces.charts)
+      if (!scales.empty())
+        result.push_back(
+            scales[whole.triangle_chart[pieces.chart_triangles[piece.first_triangle]]]);
+    return result;
+  }
+
   // Returns the densities of charts, which fill the pages without gaps as those of one scale do.
   std::vector<Vec2d> densities(const Way& way) const {
-    std::vector<Vec2d> densities(way.charts.charts.size(), Vec2d{uvs_.density, uvs_.density});
-    double whole = 0, scaled = 0;
-    for (std::size_t c = 0; c < way.own_scales.size(); ++c) {
-      const double area = way.charts.charts[c].distortion.uv_area;
-      whole += area;
-      scaled += area * way.own_scales[c] * way.own_scales[c];
-    }
-    for (std::size_t c = 0; c < way.own_scales.size(); ++c) {
-      const double own = way.own_scales[c] * std::sqrt(whole / scaled);
-      densities[c] = {own * uvs_.density, own * uvs_.density};
-    }
+    const double more = std::sqrt(way.charts.distortion.uv_area / scaled_area(way));
+    const double all = way.own_scales.empty() ? uvs_.density : uvs_.density * more;
+    std::vector<Vec2d> densities(way.charts.charts.size(), Vec2d{all, all});
+    for (std::size_t c = 0; c < way.own_scales.size(); ++c)
+      densities[c] = {all * way.own_scales[c], all * way.own_scales[c]};
     return densities;
   }
 
@@ -225,19 +254,23 @@ class PageFiller {
   // Cuts charts ever shorter until the pages are full enough. `best` becomes the last way that is
   // worth its seams.
   Status cut(const ChartSet& whole, Way& best) {
-    const double area = whole.distortion.uv_area, root_area = std::sqrt(whole.surface_area);
-    const double side = std::sqrt(area / double(options_.pages));
+    const std::vector<double> scales = best.own_scales;
+    const double root_area = std::sqrt(whole.surface_area);
+    const double side = std::sqrt(scaled_area(best) / double(options_.pages));
     double seams_before = whole.seam_length;
     int vain = 0;
     for (const double longest : kLongestSides) {
       ++parts_;
       if (over()) return {};
-      const std::vector<double> limits(whole.charts.size(), longest * side);
+      std::vector<double> limits(whole.charts.size(), longest * side);
+      for (std::size_t c = 0; c < scales.size(); ++c)
+        if (scales[c] < 1) limits[c] = std::numeric_limits<double>::infinity();
       Way way{whole, {}};
       const Result<std::size_t> pieces =
           cut_to_limits(uvs_.mesh, {limits, uvs_.options.max_stretch}, way.charts, context_);
       if (!pieces.ok()) return pieces.status();
       if (*pieces == 0) continue;
+      way.own_scales = of_pieces(scales, whole, way.charts);
       if (way.charts.seam_length == seams_before) continue;  // the same cuts as before
       seams_before = way.charts.seam_length;
       const double seams = (way.charts.seam_length - best.charts.seam_length) / root_area;
@@ -269,20 +302,6 @@ class PageFiller {
     return {};
   }
 
-  // Gives charts that leave pages poorly filled, and cannot be cut, scales of their own.
-  Status scale_longest(Way& best) const {
-    const double enough = kPoor / best.layout.with_lost_room;
-    if (uvs_.asked || !cuts() || over() || goal_.covered(best.layout) >= enough) return {};
-    Way scaled{best.charts, {}, false, false, own_scales(best.charts, options_.pages)};
-    if (scaled.own_scales.empty()) return {};
-    Result<WorkedLayout> layout = lay_out(scaled, unpressed_);
-    if (!layout.ok()) return context_.cancelled() ? layout.status() : Status();
-    scaled.layout = std::move(*layout);
-    if (goal_.covered(scaled.layout) < enough) return {};
-    best = std::move(scaled);
-    return {};
-  }
-
   // Presses several pages of pieces if that may make them as full as they are wanted.
   Status improve(Way& way, const LayoutEffort& further, bool may_press) const {
     if (!may_press) return {};
@@ -297,7 +316,7 @@ class PageFiller {
   const PlainUvs& uvs_;
   const LayoutEffort options_;
   LayoutEffort unpressed_;
-  const Context& context_;
+  Context context_;
   Goal goal_;
   int parts_ = 0;  // how many are done
 };

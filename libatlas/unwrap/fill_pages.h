@@ -20,8 +20,8 @@ struct PlainUvs {
 // small, and so does a chart that is larger than each of several pages. If pages stay poorly
 // filled, charts are therefore cut (cut_to_limits) to ever smaller parts of a page's side, as long
 // as the area that they cover grows by more than the additional seams are worth. `charts` become
-// those that are laid out. Where even these leave half of the pages empty, charts that are longer
-// than the page that the others fill get scales of their own (PageLayout::own_scales).
+// those that are laid out. Where even these leave half of the pages empty, charts that are far
+// longer than the page that the others fill get scales of their own (PageLayout::own_scales).
 // Neither is done with ChartOptions::min_fill = 0 or keep_uv_charts, or if everything fits at the
 // wanted density. Errors: those of lay_out_pages.
 Result<PageLayout> fill_pages(const PlainUvs& uvs, const LayoutOptions& options, ChartSet& charts,

@@ -14,6 +14,8 @@ namespace {
 // How long charts may be, relative to the side of a square page that all would fill without gaps:
 // pages that are 0.8 full have sides of 1.12.
 constexpr double kLongest = 1.1;
+// Charts that are longer than that by less than this factor keep the common scale.
+constexpr double kFarLonger = 2;
 // Charts at the common scale must have this share of the area. If they are the smaller part, long
 // charts are what the page is for.
 constexpr double kOthers = 0.5;
@@ -36,12 +38,12 @@ std::vector<double> own_scales(const ChartSet& set, std::uint32_t pages) {
   double longest = kLongest * std::sqrt(others / pages), slim = 0;
   std::vector<double> scales(charts.size(), 1);
   std::size_t count = 0;
-  for (; count < order.size() && charts[order[count]].size.x > longest; ++count) {
+  for (; count < order.size() && charts[order[count]].size.x > kFarLonger * longest; ++count) {
     const Chart& chart = charts[order[count]];
     others -= chart.distortion.uv_area;
     slim += chart.distortion.uv_area / (chart.size.x * chart.size.x);
     const double room = pages - kLongest * kLongest * slim;
-    if (others < enough || !(room > 0)) return {};
+    if (others < enough || !(room > 0)) break;
     longest = kLongest * std::sqrt(others / room);
   }
   if (count == 0) return {};

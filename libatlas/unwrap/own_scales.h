@@ -10,10 +10,10 @@
 
 namespace atlas {
 
-// Returns the scales of charts relative to the common one, one per chart: below 1 for charts that
-// are longer than the side of a page (one of `pages`) that all charts would nearly fill, such that
-// they become as long as that, and 1 for the others. Returns nothing if no chart is so long, or if
-// the others have less than half of the area.
+// Returns the scales of charts relative to the common one, one per chart: 1 for most, and below 1
+// for the charts that are more than twice as long as the side of a page (one of `pages`) that all
+// charts would nearly fill, such that they become as long as that. The longest come first, as long
+// as the others have half of the area. Returns nothing if there are none.
 std::vector<double> own_scales(const ChartSet& charts, std::uint32_t pages);
 
 // Returns the texels per unit of length of all charts but those of PageLayout::own_scales.
