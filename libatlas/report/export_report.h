@@ -101,7 +101,7 @@ struct ExportReport {
 
   // Pages
   GroupingResult grouping = {};
-  double scale = 1;  // common to all textures
+  double scale = 1;           // common to all textures
   double uv_utilization = 0;  // uv area of the charts / area of the pages
   // The share of the pages' texels that charts have only because of ExportOptions::min_side: what
   // they hold beyond the common scale. With baked light.
