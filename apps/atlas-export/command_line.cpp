@@ -226,6 +226,7 @@ void add_page_options(CLI::App& app, ExportOptions& options) {
                                        {"best", PackPreset::best}}))
       ->type_name("NAME")
       ->default_str("default");
+  add_budget(app, "--packing", options.time_budget);
   add_off_flag(app, "--boxes", options.outlines,
                "Pack the charts' boxes only; else outlines too, and the better of both is kept");
   add_off_flag(app, "--no-simplify", options.simplify,

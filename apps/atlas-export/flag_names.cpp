@@ -7,7 +7,7 @@
 namespace atlas::app {
 namespace {
 
-constexpr std::array<FlagName, 42> kFlagNames{{
+constexpr std::array<FlagName, 44> kFlagNames{{
     {"ExportOptions::atlases", "--atlases"},
     {"ExportOptions::lightmap_pages", "--atlases"},
     {"ExportOptions::plain_pages", "--atlases"},
@@ -34,6 +34,8 @@ constexpr std::array<FlagName, 42> kFlagNames{{
     {"ExportOptions::mesh_uvs", "--instances"},
     {"ExportOptions::linear", "--linear"},
     {"ExportOptions::exr", "--exr"},
+    {"ExportOptions::packing", "--packing"},
+    {"ExportOptions::time_budget", "--budget"},
     {"ExportOptions::quantity", "--quantity"},
     {"ExportOptions::colours_are_light", "--quantity"},
     {"ExportOptions::split_at_light", "--across-light"},

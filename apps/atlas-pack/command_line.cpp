@@ -9,7 +9,6 @@
 
 #include "apps/common/options.h"
 #include "apps/common/program.h"
-#include "libatlas/files/parse_number.h"
 
 namespace atlas::app {
 namespace {
@@ -32,19 +31,6 @@ std::string parse_page(const std::string& text, Extent& page) {
         "be)",
         text, kMost);
   page = read_page;
-  return {};
-}
-
-// Parses "1s", "500ms", "2m" or a number of seconds. Returns a complaint, empty if there is none.
-std::string parse_seconds(const std::string& text, double& seconds) {
-  double value = 0;
-  const char* end = parse_number(text.data(), text.data() + text.size(), value);
-  const std::string unit = end ? end : "";
-  const std::map<std::string, double> units{
-      {"", 1}, {"s", 1}, {"ms", 1e-3}, {"m", 60}, {"min", 60}};
-  if (end == nullptr || !units.count(unit) || !(value >= 0 && value < 1e9))
-    return "'" + text + "' must be a duration such as 1s, 500ms or 2m (without a unit: seconds)";
-  seconds = value * units.at(unit);
   return {};
 }
 
@@ -73,14 +59,7 @@ void add_effort_options(CLI::App& app, PackCommand& c) {
       ->transform(choices(presets))
       ->type_name("NAME")
       ->default_str("default");
-  app.add_option_function<std::string>(
-         "--budget",
-         [&c](const std::string& t) {
-           if (std::string e = parse_seconds(t, c.options.time_budget); !e.empty())
-             throw CLI::ValidationError("--budget", e);
-         })
-      ->type_name("TIME")
-      ->description("Time for --preset best, e.g. 1s or 500ms, without a unit seconds");
+  add_budget(app, "--preset", c.options.time_budget);
   app.add_option(
          "--effort", c.options.effort,
          "Layouts tried at most by --preset best (mesh: its work, about milliseconds); with it "

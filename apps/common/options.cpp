@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "apps/common/program.h"
+#include "libatlas/files/parse_number.h"
 
 namespace atlas::app {
 namespace {
@@ -165,6 +166,19 @@ std::string complaint(const CLI::App& app, const CLI::ParseError& error) {
   return text;
 }
 
+// Parses "1s", "500ms", "2m" or a number of seconds. Returns a complaint, empty if there is none.
+std::string parse_seconds(const std::string& text, double& seconds) {
+  double value = 0;
+  const char* end = parse_number(text.data(), text.data() + text.size(), value);
+  const std::string unit = end ? end : "";
+  const std::map<std::string, double> units{
+      {"", 1}, {"s", 1}, {"ms", 1e-3}, {"m", 60}, {"min", 60}};
+  if (end == nullptr || !units.count(unit) || !(value >= 0 && value < 1e9))
+    return "'" + text + "' must be a duration such as 1s, 500ms or 2m (without a unit: seconds)";
+  seconds = value * units.at(unit);
+  return {};
+}
+
 }  // namespace
 
 CLI::Validator within(double low, double high, const std::string& text) {
@@ -235,6 +249,17 @@ CLI::Option* add_off_flag(CLI::App& app, const std::string& name, bool& value,
                           const std::string& help) {
   return app.add_flag_callback(
       name, [&value] { value = false; }, help);
+}
+
+void add_budget(CLI::App& app, const std::string& preset, double& seconds) {
+  app.add_option_function<std::string>("--budget",
+                                       [&seconds](const std::string& text) {
+                                         if (std::string e = parse_seconds(text, seconds);
+                                             !e.empty())
+                                           throw CLI::ValidationError("--budget", e);
+                                       })
+      ->type_name("TIME")
+      ->description("Time for " + preset + " best, e.g. 1s or 500ms, without a unit seconds");
 }
 
 void add_examples(CLI::App& app, std::span<const std::pair<const char*, const char*>> examples) {

@@ -34,6 +34,9 @@ CLI::Validator choices(const std::map<std::string, T>& names) {
 CLI::Option* add_off_flag(CLI::App& app, const std::string& name, bool& value,
                           const std::string& help);
 
+// Adds --budget, the seconds that packing may take where `preset` is best.
+void add_budget(CLI::App& app, const std::string& preset, double& seconds);
+
 // Adds what a program that reads scenes lets users choose for those of strangers.
 void add_trust_options(CLI::App& app, ReadOptions& read);
 

@@ -26,13 +26,13 @@ struct Row {
   double chart_seconds = 0, page_seconds = 0, used = 0;
 };
 
-// FAMILY:NUMBER, or a file.
+// FAMILY:NUMBER, KIND:TRIANGLES, or a file.
 Result<LoadedScene> load(const std::string& name, const Context& context) {
   const auto colon = name.find(':');
   const auto families = bench::families();
   if (colon == std::string::npos ||
       std::find(families.begin(), families.end(), name.substr(0, colon)) == families.end())
-    return bench::make_work("file:" + name, context);
+    return bench::make_work((std::filesystem::exists(name) ? "file:" : "") + name, context);
   std::uint32_t number = 0;
   std::from_chars(name.data() + colon + 1, name.data() + name.size(), number);
   Result<test::Shape> shape = bench::make_member(name.substr(0, colon), number);
@@ -73,7 +73,8 @@ int main(int argc, char** argv) {
   std::vector<std::string> names;
   std::uint32_t members = 0;
   CLI::App app("What packing costs, and how full pages become.", "atlas-bench-pack-effort");
-  app.add_option("mesh", names, "files, or FAMILY:NUMBER");
+  app.add_option("mesh", names,
+                 fmt::format("files, FAMILY:NUMBER or KIND:TRIANGLES ({})", bench::kShapeKinds));
   app.add_option("--members", members, "so many members of each family");
   app.add_flag("--square", options.square, "square pages");
   if (const int code = app::parse(app, argc, argv); code >= 0) return code;

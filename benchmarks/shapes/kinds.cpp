@@ -8,6 +8,8 @@
 #include <numbers>
 #include <random>
 
+#include "benchmarks/shapes/rings.h"
+
 namespace atlas::bench {
 namespace {
 
@@ -171,6 +173,12 @@ Result<Shape> make_shape(const std::string& kind, std::uint64_t triangles) {
     shape = fasteners(triangles);
   else if (kind == "genus")
     shape = genus(triangles);
+  else if (kind == "gasket")
+    shape = gasket(triangles);
+  else if (kind == "seat")
+    shape = seat(triangles);
+  else if (kind == "mail")
+    shape = mail(triangles);
   else if (kind == "soup")
     shape = test::soup(int(triangles), 5);
   else if (kind == "needles")

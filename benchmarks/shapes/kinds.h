@@ -11,7 +11,8 @@ namespace atlas::bench {
 
 // The kinds that make_shape knows, for help texts.
 inline constexpr const char* kShapeKinds =
-    "sphere, scan, rough, torus, terrain, assembly, fasteners, genus, soup, needles";
+    "sphere, scan, rough, torus, terrain, assembly, fasteners, genus, gasket, seat, mail, soup, "
+    "needles";
 
 // Returns a shape of about so many triangles, in metres:
 //   sphere    smooth closed surface        torus     handle
@@ -21,6 +22,8 @@ inline constexpr const char* kShapeKinds =
 //   assembly  boxes, tubes and plates in metres, a part every 48 triangles
 //   fasteners a dozen standard parts, repeated with random rotations
 //   genus     plate with fifty holes       soup      unconnected triangles, like foliage
+//   gasket    flat ring with 160 holes  seat      thirty arcs, nearly equal blocks
+//   mail      900 rings of chain mail
 //   needles   strips of aspect 1000
 // Errors: bad_option (unknown kind).
 Result<test::Shape> make_shape(const std::string& kind, std::uint64_t triangles);

@@ -73,6 +73,19 @@ Status check_weight(const ExportOptions& o) {
   return {};
 }
 
+Status check_time_budget(const ExportOptions& o) {
+  if (!(o.time_budget >= 0)) return out_of_range("time_budget", "at least 0 seconds");
+  if (std::isinf(o.time_budget)) return {};
+  if (o.packing != PackPreset::best)
+    return {ErrorCode::bad_option,
+            "ExportOptions::time_budget is for ExportOptions::packing best (give both or none)"};
+  if (o.mesh_uvs == MeshUvs::places && !o.like) return {};
+  return {ErrorCode::bad_option,
+          fmt::format("ExportOptions::time_budget: is for charts that are all laid out together "
+                      "(leave {} out)",
+                      o.like ? "ExportOptions::like" : "ExportOptions::mesh_uvs")};
+}
+
 }  // namespace
 
 const char* page_extension(TextureFormat format) {
@@ -157,6 +170,7 @@ Status check_options(const ExportOptions& o) {
   if (!is_enumerator(o.bake_method, BakeMethod::average))
     return out_of_range("bake_method", "a BakeMethod");
   if (!is_enumerator(o.packing, PackPreset::best)) return out_of_range("packing", "a PackPreset");
+  if (Status s = check_time_budget(o); !s.ok()) return s;
   if (!is_enumerator(o.up, Up::z)) return out_of_range("up", "an Up");
   if (!is_enumerator(o.texture_format, TextureFormat::webp))
     return out_of_range("texture_format", "a TextureFormat");

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -111,6 +112,10 @@ struct ExportOptions {
   std::int32_t shifts = 4;  // number of sub-texel sample grids for baking, 1..64
   BakeMethod bake_method = BakeMethod::least_squares;
   PackPreset packing = PackPreset::standard;
+  // Wall time of packing with PackPreset::best, seconds, at least 0; what `fast` finds is always
+  // there. Infinite: a fixed effort, with which results repeat exactly.
+  // Needs MeshUvs::places; not with `like`, whose charts have little to search for.
+  double time_budget = std::numeric_limits<double>::infinity();
   bool outlines = true;  // pack charts by outlines if that is better than by boxes
 
   bool simplify = true;  // write a simplified mesh

@@ -34,6 +34,7 @@ std::int32_t plain_page_size(const ChartSet& charts, const ExportOptions& option
 LayoutOptions layout_options(const ChartSet& charts, const ExportOptions& options, bool bake) {
   LayoutOptions layout;
   layout.preset = options.packing;
+  layout.time_budget = options.time_budget;
   layout.outlines = options.outlines;
   layout.remedy = "give " + more_room(options, bake);
   if (bake) {

@@ -195,7 +195,7 @@ class MeshUnwrapper {
 void report_unwrapped(const UnwrappedMesh& all, ExportReport& report) {
   report_charts(all.charts, report);
   report_making(all.charts, report);
-  report.utilization = report.uv_utilization = all.utilization;
+  report.uv_utilization = all.utilization;
   report.written_stretch_999 = all.charts.distortion.stretch_999;
   report.thin_triangles = all.thin_triangles;
   report.texels_drawn_twice = all.texels_drawn_twice;

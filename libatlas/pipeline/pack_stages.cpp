@@ -11,12 +11,13 @@
 #include "libatlas/pipeline/longest_sides.h"
 #include "libatlas/pipeline/more_mip_levels.h"
 #include "libatlas/unwrap/fill_pages.h"
+#include "libatlas/unwrap/own_scales.h"
 #include "libatlas/unwrap/part_gaps.h"
 
 namespace atlas {
 namespace {
 
-constexpr double kFirstLayout = 0.7;  // share of packing's progress
+constexpr double kFirstLayout = 0.7;  // share of packing's progress and time
 
 // Given charts keep their borders.
 Result<PageLayout> lay_out_lit(ExportJob& job, const LayoutOptions& options, SizedCharts& sized,
@@ -28,10 +29,13 @@ Result<PageLayout> lay_out_lit(ExportJob& job, const LayoutOptions& options, Siz
     report_charts(sized.charts, job.report);
   }
   const double first = job.options.more_mip_levels ? kFirstLayout : 1;
-  Result<PageLayout> layout = lay_out_pages(sized.charts, sized.densities, options,
+  LayoutOptions narrow = options, wider = options;
+  narrow.time_budget *= first;
+  wider.time_budget *= (1 - kFirstLayout) / kMostMipLevels;
+  Result<PageLayout> layout = lay_out_pages(sized.charts, sized.densities, narrow,
                                             part_of_stage(context, "packing", 0, first));
   if (!layout.ok() || !job.options.more_mip_levels) return layout;
-  Result<GuardedLayout> guarded = guard_more_levels({sized.charts, sized.densities}, options,
+  Result<GuardedLayout> guarded = guard_more_levels({sized.charts, sized.densities}, wider,
                                                     {std::move(*layout), job.options.mip_levels},
                                                     part_of_stage(context, "packing", first, 1));
   if (!guarded.ok()) return guarded.status();
@@ -88,10 +92,12 @@ Result<PageLayout> lay_out_plain(ExportJob& job, const LayoutOptions& options, C
   const double texels = double(options.pages) * options.page_size * options.page_size;
   double density = filling_density(charts, texels);
   if (asked > 0) density = std::min(density, job.scene.metres_per_unit / asked);
-  const PlainUvs uvs{view_of(job.scene), job.options.charts, density};
+  const PlainUvs uvs{view_of(job.scene), job.options.charts, density, asked > 0};
   Result<PageLayout> layout = fill_plain(job, uvs, options, charts, context);
   if (!layout.ok()) return layout;
   report_charts(charts, job.report);
+  job.report.own_scales = layout->own_scales;
+  if (!layout->own_scales.empty()) job.report.advice.push_back(own_scales_text(charts, *layout));
   if (Status s = check_density(job, uvs, *layout); !s.ok()) return s;
   if (asked > 0) job.report.texel = job.report.packed_texel = asked / job.scene.metres_per_unit;
   return layout;
@@ -102,7 +108,6 @@ void report_layout(ExportJob& job, const ChartSet& charts, const PageLayout& lay
                    std::size_t uncut) {
   ExportReport& report = job.report;
   report.grouping = layout.grouping;
-  report.utilization = layout.utilization;
   report.uv_utilization = layout.uv_utilization;
   report.outlines = layout.outlines;
   report_placements(layout.placements, report);

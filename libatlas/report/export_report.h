@@ -101,15 +101,13 @@ struct ExportReport {
 
   // Pages
   GroupingResult grouping = {};
-  double scale = 1;  // common to all textures
-  // The texels of the charts' boxes, or with outlines the charts' uv area, divided by the pages'
-  // texels.
-  double utilization = 0;
+  double scale = 1;           // common to all textures
   double uv_utilization = 0;  // uv area of the charts / area of the pages
   // The share of the pages' texels that charts have only because of ExportOptions::min_side: what
   // they hold beyond the common scale. With baked light.
   double least_side_share = 0;
   bool outlines = false;
+  std::vector<std::uint32_t> own_scales = {};  // as in PageLayout
   // Triangles written that rounding the uvs to floats turns over or leaves no area.
   std::uint64_t thin_triangles = 0;
   std::uint64_t cut_polygons = 0;  // faces that are written as triangles, since seams cut them

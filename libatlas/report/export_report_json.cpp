@@ -222,10 +222,10 @@ Json pages_json(const ExportReport& r) {
   }
   Json packing{{"scale", r.scale},
                {"outlines", r.outlines},
-               {"utilization", r.utilization},
                {"uv_utilization", r.uv_utilization},
                {"least_side_share", r.least_side_share},
-               {"opened_charts", r.opened_charts}};
+               {"opened_charts", r.opened_charts},
+               {"own_scales", r.own_scales}};
   if (r.gaps) {
     packing["border_texels"] = r.gaps->border;
     packing["shared_border_texels"] = r.gaps->near_after;

@@ -3,14 +3,17 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <utility>
 #include <vector>
 
 #include "libatlas/charts/tiles.h"
+#include "libatlas/core/clock.h"
 #include "libatlas/core/progress.h"
 #include "libatlas/pack/fitting/fit_search.h"
 #include "libatlas/unwrap/layout_effort.h"
 #include "libatlas/unwrap/least_room.h"
+#include "libatlas/unwrap/own_scales.h"
 
 namespace atlas {
 namespace {
@@ -48,7 +51,8 @@ constexpr double kLeastGain = 0.1, kLeastGainSeveral = 0.05, kSeamPrice = 0.06, 
 constexpr double kMostPressed = 1.15;
 constexpr int kMostVain = 2;
 constexpr std::size_t kFewAPage = 16;
-// Several pages that are filled to less are laid out once more as fewer pages.
+// Several pages that are filled to less are laid out once more as fewer pages. Pages that would
+// otherwise be filled to less are filled to more by scales of their own for the longest charts.
 constexpr double kPoor = 0.5;
 
 // Tells how well layouts fill the pages that may be used.
@@ -97,6 +101,7 @@ struct Way {
   ChartSet charts;
   WorkedLayout layout;
   bool pressed = false, worked = false;
+  std::vector<double> own_scales = {};  // one per chart, or empty: all have the common scale
 };
 
 class PageFiller {
@@ -104,33 +109,70 @@ class PageFiller {
   PageFiller(const PlainUvs& uvs, const LayoutOptions& options, const ChartSet& charts,
              const Context& context)
       : uvs_(uvs),
-        options_{options},
-        unpressed_{options},
+        options_(effort_of(options)),
+        unpressed_(options_),
         context_(context),
         goal_{options_, charts.distortion.uv_area * uvs.density * uvs.density} {
     // Several pages are pressed only if it may decide between ways, and at the end, because it
     // takes a second or more for each way.
     unpressed_.press_pages = false;
+    // A limited time is spent on the way that is chosen, and not on comparing them.
+    if (timed()) unpressed_.preset = PackPreset::standard;
   }
 
   // Replaces the charts by those that are laid out.
   Result<PageLayout> run(ChartSet& charts) {
-    Result<WorkedLayout> first = lay_out(charts, unpressed_);
-    if (!first.ok()) return first.status();
-    Way best{charts, std::move(*first)};
-    if (may_cut(charts) && !goal_.reached(best.layout)) {
-      if (Status s = press(best, options_, kFilledFree); !s.ok()) return s;
-      if (!goal_.reached(best.layout)) {
-        if (Status s = cut(charts, best); !s.ok()) return s;
-      }
-    }
+    Way best{charts, {}};
+    if (Status s = fill(charts, best); !s.ok()) return s;
+    if (Status s = scale_longest(charts, best); !s.ok()) return s;
     if (Status s = press(best, options_, 0); !s.ok()) return s;
+    if (timed() && !over()) {
+      Result<WorkedLayout> searched = lay_out(best, options_);
+      if (searched.ok() && goal_.covered(*searched) > goal_.covered(best.layout))
+        best.layout = std::move(*searched);
+      if (context_.cancelled()) return Status::cancelled();
+    }
     charts = std::move(best.charts);
-    return PageLayout(std::move(best.layout));
+    PageLayout layout(std::move(best.layout));
+    for (std::uint32_t c = 0; c < best.own_scales.size(); ++c)
+      if (best.own_scales[c] < 1) layout.own_scales.push_back(c);
+    return layout;
   }
 
  private:
+  static LayoutEffort effort_of(const LayoutOptions& options) {
+    LayoutEffort effort{options};
+    if (options.preset == PackPreset::best) effort.deadline = wall_seconds() + options.time_budget;
+    return effort;
+  }
+  bool timed() const { return std::isfinite(options_.deadline); }
+  bool over() const { return wall_seconds() >= options_.deadline; }
+
   static constexpr double kParts = 1 + kLongestSides.size();
+
+  // Lays out whole charts, and cuts them if they leave the pages too empty.
+  Status fill(const ChartSet& whole, Way& best) {
+    Result<WorkedLayout> first = lay_out(best, unpressed_);
+    if (!first.ok()) return first.status();
+    best.layout = std::move(*first);
+    if (!may_cut(best.charts) || goal_.reached(best.layout)) return {};
+    if (Status s = press(best, options_, kFilledFree); !s.ok()) return s;
+    return goal_.reached(best.layout) ? Status() : cut(whole, best);
+  }
+
+  // Gives charts that leave pages poorly filled, and cannot be cut, scales of their own.
+  Status scale_longest(const ChartSet& charts, Way& best) {
+    const double enough = kPoor / best.layout.with_lost_room;
+    if (uvs_.asked || !cuts() || over() || goal_.covered(best.layout) >= enough) return {};
+    Way scaled{charts, {}};
+    scaled.own_scales = own_scales(charts, options_.pages);
+    if (scaled.own_scales.empty()) return {};
+    context_.progress = nullptr;  // which must not begin anew
+    const Status filled = fill(charts, scaled);
+    if (context_.cancelled()) return Status::cancelled();
+    if (filled.ok() && goal_.covered(scaled.layout) >= enough) best = std::move(scaled);
+    return {};
+  }
 
   // Returns the context for a section of the current part. Each way of cutting is one part of the
   // stage.
@@ -138,19 +180,43 @@ class PageFiller {
     return part_of_stage(context_, "packing", (parts_ + from) / kParts, (parts_ + to) / kParts);
   }
 
-  std::vector<Vec2d> densities(const ChartSet& charts) const {
-    return std::vector<Vec2d>(charts.charts.size(), Vec2d{uvs_.density, uvs_.density});
+  static double scaled_area(const Way& way) {
+    double area = way.charts.distortion.uv_area;
+    for (std::size_t c = 0; c < way.own_scales.size(); ++c)
+      area -= (1 - way.own_scales[c] * way.own_scales[c]) * way.charts.charts[c].distortion.uv_area;
+    return area;
   }
 
-  Result<WorkedLayout> lay_out(const ChartSet& charts, const LayoutEffort& options) const {
-    return lay_out_charts({charts, densities(charts)}, options, part(0, kLaidOut));
+  // Returns the scales of pieces, which are those of the charts that they were cut from.
+  static std::vector<double> of_pieces(const std::vector<double>& scales, const ChartSet& whole,
+                                       const ChartSet& pieces) {
+    std::vector<double> result;
+    for (const Chart& piece : pieces.charts)
+      if (!scales.empty())
+        result.push_back(
+            scales[whole.triangle_chart[pieces.chart_triangles[piece.first_triangle]]]);
+    return result;
+  }
+
+  // Returns the densities of charts, which fill the pages without gaps as those of one scale do.
+  std::vector<Vec2d> densities(const Way& way) const {
+    const double more = std::sqrt(way.charts.distortion.uv_area / scaled_area(way));
+    const double all = way.own_scales.empty() ? uvs_.density : uvs_.density * more;
+    std::vector<Vec2d> densities(way.charts.charts.size(), Vec2d{all, all});
+    for (std::size_t c = 0; c < way.own_scales.size(); ++c)
+      densities[c] = {all * way.own_scales[c], all * way.own_scales[c]};
+    return densities;
+  }
+
+  Result<WorkedLayout> lay_out(const Way& way, const LayoutEffort& options) const {
+    return lay_out_charts({way.charts, densities(way)}, options, part(0, kLaidOut));
   }
 
   // Lays out pieces with as much work as the whole charts, which so many are.
   Status lay_out_fully(Way& way, std::size_t whole, double wanted) const {
     LayoutEffort effort = with_work_of(whole, 1, way);
     effort.wanted_fill = wanted;
-    Result<WorkedLayout> fuller = lay_out(way.charts, effort);
+    Result<WorkedLayout> fuller = lay_out(way, effort);
     if (fuller.ok() && goal_.covered(*fuller) > goal_.covered(way.layout))
       way.layout = std::move(*fuller);
     way.worked = true;
@@ -171,7 +237,7 @@ class PageFiller {
         kMostPressed * goal_.covered(way.layout) < wanted) {
       return {};
     }
-    const std::vector<Vec2d> wanted_densities = densities(way.charts);
+    const std::vector<Vec2d> wanted_densities = densities(way);
     Result<WorkedLayout> pressed =
         press_layout({way.charts, wanted_densities}, options, way.layout, part(kLaidOut, 1));
     if (!pressed.ok()) return pressed.status();
@@ -180,26 +246,31 @@ class PageFiller {
     return {};
   }
 
+  bool cuts() const { return uvs_.options.min_fill > 0 && !uvs_.options.keep_uv_charts; }
   bool may_cut(const ChartSet& charts) const {
-    return uvs_.options.min_fill > 0 && !uvs_.options.keep_uv_charts &&
-           (!options_.free_aspect || charts.charts.size() <= kMostChartsFree);
+    return cuts() && (!options_.free_aspect || charts.charts.size() <= kMostChartsFree);
   }
 
   // Cuts charts ever shorter until the pages are full enough. `best` becomes the last way that is
   // worth its seams.
   Status cut(const ChartSet& whole, Way& best) {
-    const double area = whole.distortion.uv_area, root_area = std::sqrt(whole.surface_area);
-    const double side = std::sqrt(area / double(options_.pages));
+    const std::vector<double> scales = best.own_scales;
+    const double root_area = std::sqrt(whole.surface_area);
+    const double side = std::sqrt(scaled_area(best) / double(options_.pages));
     double seams_before = whole.seam_length;
     int vain = 0;
     for (const double longest : kLongestSides) {
       ++parts_;
-      const std::vector<double> limits(whole.charts.size(), longest * side);
+      if (over()) return {};
+      std::vector<double> limits(whole.charts.size(), longest * side);
+      for (std::size_t c = 0; c < scales.size(); ++c)
+        if (scales[c] < 1) limits[c] = std::numeric_limits<double>::infinity();
       Way way{whole, {}};
       const Result<std::size_t> pieces =
           cut_to_limits(uvs_.mesh, {limits, uvs_.options.max_stretch}, way.charts, context_);
       if (!pieces.ok()) return pieces.status();
       if (*pieces == 0) continue;
+      way.own_scales = of_pieces(scales, whole, way.charts);
       if (way.charts.seam_length == seams_before) continue;  // the same cuts as before
       seams_before = way.charts.seam_length;
       const double seams = (way.charts.seam_length - best.charts.seam_length) / root_area;
@@ -210,7 +281,7 @@ class PageFiller {
       if (most_covered(way.charts, uvs_.density, options_) < wanted) continue;
       LayoutEffort further = with_work_of(whole.charts.size(), kOfTrial, way);
       further.wanted_fill = wanted;
-      Result<WorkedLayout> layout = lay_out(way.charts, further);
+      Result<WorkedLayout> layout = lay_out(way, further);
       if (!layout.ok() && layout.status().code() != ErrorCode::no_solution) return layout.status();
       // The gutters around the pieces take more room than there is, and those around smaller pieces
       // would take even more.
@@ -245,7 +316,7 @@ class PageFiller {
   const PlainUvs& uvs_;
   const LayoutEffort options_;
   LayoutEffort unpressed_;
-  const Context& context_;
+  Context context_;
   Goal goal_;
   int parts_ = 0;  // how many are done
 };
@@ -261,18 +332,19 @@ struct Whole {
 // longer than a page are not cut at all: eight pages of a hinge had longer texels than two.
 // Therefore lays poorly filled pages out again, as so few as could hold what they do. `layout` and
 // `charts` become the denser result.
-Status try_fewer_pages(const Whole& whole, PageLayout& layout, ChartSet& charts,
+Status try_fewer_pages(const Whole& whole, double left, PageLayout& layout, ChartSet& charts,
                        const Context& context) {
   const std::size_t count = layout.pages.size();
   if (count == whole.options.pages && layout.uv_utilization >= kPoor) return {};
   LayoutOptions fewer = whole.options;
+  fewer.time_budget = left;
   const double filled = layout.uv_utilization * double(count) / kFilledSeveral;
   fewer.pages = std::max(2u, std::uint32_t(std::ceil(filled)));
   if (fewer.pages >= whole.options.pages) return {};
   Result<PageLayout> denser = PageFiller(whole.uvs, fewer, whole.charts, context).run(whole.charts);
   if (denser.status().code() == ErrorCode::no_solution) return {};
   if (!denser.ok()) return denser.status();
-  if (denser->scale <= layout.scale) return {};
+  if (common_density(*denser) <= common_density(layout)) return {};
   layout = std::move(*denser);
   charts = std::move(whole.charts);
   return {};
@@ -282,13 +354,15 @@ Status try_fewer_pages(const Whole& whole, PageLayout& layout, ChartSet& charts,
 
 Result<PageLayout> fill_pages(const PlainUvs& uvs, const LayoutOptions& options, ChartSet& charts,
                               const Context& context) {
+  const double begun = wall_seconds();
   const Context stage = part_of_stage(context, "packing");  // an early way may be pressed last
   const bool may_cut = options.pages > 2 && uvs.options.min_fill > 0 && !uvs.options.keep_uv_charts;
   ChartSet whole;
   if (may_cut) whole = charts;
   Result<PageLayout> layout = PageFiller(uvs, options, charts, stage).run(charts);
   if (may_cut && layout.ok() && layout->scale < 1) {
-    if (Status s = try_fewer_pages({uvs, options, whole}, *layout, charts, stage); !s.ok())
+    const double left = std::max(0.0, options.time_budget - (wall_seconds() - begun));
+    if (Status s = try_fewer_pages({uvs, options, whole}, left, *layout, charts, stage); !s.ok())
       return s;
   }
   stage.report("packing", 1);

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <span>
 
 #include "libatlas/charts/charts.h"
@@ -17,6 +18,8 @@ struct LayoutEffort : LayoutOptions {
   double wanted_fill = 0;           // as in pack::FitSearchOptions
   double first_round = 1;           // as in pack::FitSearchOptions
   std::uint32_t max_packings = 25;  // as in FitOptions
+  // As in pack::FitSearchOptions, also for other presets.
+  double deadline = std::numeric_limits<double>::infinity();
 };
 
 struct WorkedLayout : PageLayout {

@@ -93,10 +93,13 @@ LayoutProblem::LayoutProblem(const WantedCharts& wanted, const LayoutEffort& how
   for (std::size_t c = 0; c < items.size(); ++c)
     items[c] = chart_box(charts.charts[c], texels_per_unit[c]);
   static_cast<FitOptions&>(fit) = box_fit_options(options);
-  // Effort is limited instead of time, because a limit on time would make the result depend on
-  // how busy the machine is.
-  fit.effort =
-      std::uint64_t(std::ceil(kBestRounds * pack::round_work(items.size()) / pack::kWordsOfEffort));
+  // Unless time was asked for, effort is limited instead, because a limit on time makes the result
+  // depend on how busy the machine is.
+  fit.time_budget = options.time_budget;
+  fit.deadline = options.deadline;
+  if (std::isinf(options.time_budget))
+    fit.effort = std::uint64_t(
+        std::ceil(kBestRounds * pack::round_work(items.size()) / pack::kWordsOfEffort));
   fit.free_aspect = options.free_aspect;
   fit.wanted_fill = options.wanted_fill;
   fit.first_round = options.first_round;
@@ -123,7 +126,6 @@ WorkedLayout layout_of(FitResult fitted, const LayoutProblem& problem) {
   layout.outlines = options.outlines && !fitted.boxes;
   layout.scale = fitted.scale;
   layout.pages = std::move(fitted.pages);
-  layout.utilization = fitted.utilization;
   layout.grouping = std::move(fitted.grouping);
   layout.placements.resize(fitted.placements.size());
   for (std::size_t c = 0; c < fitted.placements.size(); ++c) {

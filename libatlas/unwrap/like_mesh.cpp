@@ -197,7 +197,7 @@ class LikeMesh::Keeper {
     if (Status s = place_others(density, context); !s.ok()) return s;
     if (apart) pages.left = left_part_gaps(like_.view_, charts_, layout_.placements, context);
     if (context.cancelled()) return Status::cancelled();
-    layout_.utilization = layout_.uv_utilization = uv_utilization(charts_, layout_);
+    layout_.uv_utilization = uv_utilization(charts_, layout_);
     pages.layout = std::move(layout_);
     return pages;
   }

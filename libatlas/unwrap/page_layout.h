@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <string>
 #include <vector>
@@ -19,7 +20,10 @@ namespace atlas {
 // Page sides are powers of two unless free_aspect, which overrides `square` too.
 struct LayoutOptions : PageOptions {
   std::int32_t minimum_side = 16;  // scaling makes no side of a chart shorter, if it was longer
-  bool outlines = false;           // also try outlines, and use them if they pack better
+  // Wall time of PackPreset::best, seconds, at least 0. Infinite: a fixed effort, with which
+  // results repeat exactly.
+  double time_budget = std::numeric_limits<double>::infinity();
+  bool outlines = false;  // also try outlines, and use them if they pack better
   // Use one page whose sides are at most page_size, and make it as full as possible. This is for
   // uvs without images, where texels have no size.
   bool free_aspect = false;
@@ -33,9 +37,11 @@ struct PageLayout {
   std::vector<Extent> pages = {};               // texels
   bool outlines = false;                        // the charts were packed by outlines
   double scale = 1;                             // common to all densities
-  double utilization = 0;                       // as in FitResult
   double uv_utilization = 0;                    // area of the charts / area of the pages
   GroupingResult grouping = {};
+  // Charts of plain uvs that are longer than the page that all others fill, so that they have less
+  // than the common scale. Ascending.
+  std::vector<std::uint32_t> own_scales = {};
   // Only beside earlier uvs (like.h): what each chart has of them; and the uvs of the charts that
   // stay, one per uv of the charts, in texels of their page, NaN for the others.
   std::vector<ChartOrigin> origins = {};

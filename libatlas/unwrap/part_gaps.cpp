@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "libatlas/core/clock.h"
 #include "libatlas/core/progress.h"
 
 namespace atlas {
@@ -18,6 +19,9 @@ constexpr double kLikelyFill = 0.6;
 
 // The factor by which charts may still become smaller once their gaps have been opened.
 constexpr double kSmaller = 1.03;
+
+// The share of progress and time for the first layout.
+constexpr double kFirstLayout = 0.5;
 
 double clearance_at(Vec2d density) {
   const double least = std::min(density.x, density.y);
@@ -45,8 +49,11 @@ Result<PagesOfParts> filled_apart(const PlainUvs& uvs, const LayoutOptions& opti
   const std::vector<Vec2d> wanted(charts.charts.size(), {uvs.density, uvs.density});
   PagesOfParts pages;
   pages.opened = open_part_gaps({uvs.mesh, max_stretch, texels}, wanted, charts, context).charts;
+  const double begun = wall_seconds();
+  LayoutOptions part = options;
+  part.time_budget = kFirstLayout * options.time_budget;
   Result<PageLayout> layout =
-      fill_pages(uvs, options, charts, part_of_stage(context, "packing", 0, 0.5));
+      fill_pages(uvs, part, charts, part_of_stage(context, "packing", 0, kFirstLayout));
   if (!layout.ok()) return layout.status();
   pages.layout = std::move(*layout);
   pages.left = left_part_gaps(uvs.mesh, charts, pages.layout.placements, context);
@@ -58,7 +65,8 @@ Result<PagesOfParts> filled_apart(const PlainUvs& uvs, const LayoutOptions& opti
   const Result<GapReport> opened = widen_gaps(uvs.mesh, {clearance, max_stretch}, wider, context);
   if (!opened.ok()) return opened.status();
   if (opened->charts == 0) return pages;
-  layout = fill_pages(uvs, options, wider, part_of_stage(context, "packing", 0.5, 1));
+  part.time_budget = std::max(0.0, options.time_budget - (wall_seconds() - begun));
+  layout = fill_pages(uvs, part, wider, part_of_stage(context, "packing", kFirstLayout, 1));
   if (context.cancelled()) return Status::cancelled();
   if (!layout.ok()) return pages;
   const GapReport left = left_part_gaps(uvs.mesh, wider, layout->placements, context);

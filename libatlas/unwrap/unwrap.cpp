@@ -16,6 +16,7 @@
 #include "libatlas/unwrap/check_pages.h"
 #include "libatlas/unwrap/fill_pages.h"
 #include "libatlas/unwrap/like_mesh.h"
+#include "libatlas/unwrap/own_scales.h"
 #include "libatlas/unwrap/part_gaps.h"
 #include "libatlas/unwrap/place_charts.h"
 #include "libatlas/uvs/finish_uvs.h"
@@ -74,7 +75,7 @@ Result<PagesOfParts> lay_out(const MeshView& mesh, const UnwrapOptions& options,
   const double density =
       options.texels_per_unit > 0 ? std::min(options.texels_per_unit, filling) : filling;
   const LayoutOptions layout = layout_options(options);
-  const PlainUvs uvs{mesh, options.charts, density};
+  const PlainUvs uvs{mesh, options.charts, density, options.texels_per_unit > 0};
   if (options.part_gaps) return fill_pages_apart(uvs, layout, charts, context);
   Result<PageLayout> filled = fill_pages(uvs, layout, charts, context);
   if (!filled.ok()) return filled.status();
@@ -119,9 +120,9 @@ UnwrapOptions lightmap_options(double texels_per_metre, double metres_per_unit) 
 
 namespace {
 
-// The density of all charts, or the mean one by area where charts keep theirs.
+// The common density of charts, or the mean one by area where charts keep theirs.
 double mean_density(const ChartSet& charts, const PageLayout& layout) {
-  if (layout.kept_texels.empty()) return layout.placements[0].texels_per_unit.x;
+  if (layout.kept_texels.empty()) return common_density(layout);
   double texels = 0, area = 0;
   for (const ChartPlacement& p : layout.placements) {
     const double own = charts.charts[p.chart].distortion.uv_area;
@@ -135,6 +136,7 @@ double mean_density(const ChartSet& charts, const PageLayout& layout) {
 Result<UnwrappedMesh> finish(const MeshView& mesh, ChartSet charts, PagesOfParts laid,
                              const UnwrapOptions& options, const Context& context) {
   PageLayout& layout = laid.layout;
+  if (!layout.own_scales.empty()) context.say(own_scales_text(charts, layout));
   UnwrappedMesh result;
   result.charts = std::move(charts);
   result.pages = std::move(layout.pages);

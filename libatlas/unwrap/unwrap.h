@@ -27,9 +27,10 @@ struct UnwrapOptions : PageOptions {
   // that light is baked. A padding of 1 is enough to bake with 0.
   std::int32_t mip_levels = 0;
   // Texels per unit of length, the same for all charts, times MeshView::density where that is
-  // given; 0 for as many as the pages hold. If the pages hold less, all charts get less, see
-  // UnwrappedMesh::texels_per_unit. A single page that is not square is made as full as possible,
-  // instead of making its charts as large as possible.
+  // given; 0 for as many as the pages hold, and then charts that are longer than the page that the
+  // others fill, and cannot be cut, have fewer (Context::warn names them). If the pages hold less
+  // than was asked for, all charts get less, see UnwrappedMesh::texels_per_unit. A single page that
+  // is not square is made as full as possible, instead of making its charts as large as possible.
   double texels_per_unit = 0;
   // Parts of one chart that are far apart on the surface are kept apart on the page, too, like
   // different charts. Lightmaps need this, because bilinear look-ups would otherwise mix the light
@@ -59,8 +60,10 @@ struct UnwrappedMesh {
   std::vector<std::uint32_t> indices = {};
   std::vector<std::uint32_t> triangle_page = {};  // one per triangle, into pages
   std::vector<Extent> pages = {};                 // texels
-  double texels_per_unit = 0;                     // that were reached, where MeshView::density is 1
-  double utilization = 0;                         // area of the charts / area of the pages
+  // That were reached, where MeshView::density is 1. Charts that are too long for it have less, see
+  // ChartPlacement::texels_per_unit.
+  double texels_per_unit = 0;
+  double utilization = 0;            // area of the charts / area of the pages
   std::uint64_t thin_triangles = 0;  // slivers that rounding to floats closes or turns over
   // How many texels have centres that more than one triangle covers once corners are rounded to
   // 1/256 of a texel, as graphics hardware does. There are none except with very many slivers, or

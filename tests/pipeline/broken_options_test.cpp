@@ -149,7 +149,8 @@ TEST(BrokenOptions, OfPageLayoutsAreRefused) {
   const ChartSet charts = *make_charts(mesh.view(), {}, {});
   const std::vector<Vec2d> densities(charts.charts.size(), Vec2d{10, 10});
   const Walk<O> walk =
-      of_pages<O>() + Walk<O>{{{"minimum_side", [](O& o) { o.minimum_side = -1; }}},
+      of_pages<O>() + Walk<O>{{{"minimum_side", [](O& o) { o.minimum_side = -1; }},
+                               {"time_budget", [](O& o) { o.time_budget = kNan; }}},
                               {"outlines", "free_aspect", "remedy"}};
   expect_each_is_refused(
       walk, [&](const O& o) { return status_of(lay_out_pages(charts, densities, o, {})); });
@@ -342,6 +343,18 @@ TEST(BrokenOptions, OfExportsAreRefused) {
        {"shifts", [](O& o) { o.shifts = 65; }},
        {"bake_method", [](O& o) { beyond(o.bake_method); }},
        {"packing", [](O& o) { beyond(o.packing); }},
+       {"time_budget", [](O& o) { o.time_budget = 1; }},
+       {"time_budget",
+        [](O& o) {
+          o.packing = PackPreset::best;
+          o.time_budget = kNan;
+        }},
+       {"time_budget",
+        [](O& o) {
+          meshes_once(o);
+          o.packing = PackPreset::best;
+          o.time_budget = 1;
+        }},
        {"simplify_slip", [](O& o) { o.simplify_slip = kNan; }},
        {"up", [](O& o) { beyond(o.up); }},
        {"linear", [](O& o) { o.linear = true; }},

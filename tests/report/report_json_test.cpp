@@ -143,7 +143,6 @@ TEST(ReportJson, FiguresOfPagesAreInTheirPlaces) {
   GroupingResult& g = r.grouping;
   PageReport& page = r.pages[0];
   expect_in_place(r, {{"/packing/scale", &r.scale},
-                      {"/packing/utilization", &r.utilization},
                       {"/packing/uv_utilization", &r.uv_utilization},
                       {"/packing/least_side_share", &r.least_side_share},
                       {"/packing/opened_charts", &r.opened_charts},

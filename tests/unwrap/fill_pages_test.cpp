@@ -1,12 +1,15 @@
 // Uvs without light on square and on several pages: long and large charts leave none of them empty.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
+#include <string>
 #include <string_view>
 #include <utility>
 
 #include "libatlas/core/clock.h"
+#include "libatlas/unwrap/fill_pages.h"
 #include "libatlas/unwrap/unwrap.h"
 #include "tests/support/shape_view.h"
 #include "tests/support/slowness.h"
@@ -76,6 +79,37 @@ TEST(FillPages, AGivenDensityIsReachedOnAFullPage) {
   EXPECT_EQ(given.charts.charts.size(), largest.charts.charts.size());
   EXPECT_GT(given.utilization, largest.utilization - 0.1) << "gutters take more";
   EXPECT_LT(std::max(given.pages[0].width, given.pages[0].height), 2048 / 5);
+}
+
+// A strip of two triangles that is much longer than the page that the plate fills.
+TEST(FillPages, AStripThatCannotBeCutGetsAScaleOfItsOwn) {
+  const Shape shape = together(grid(9, 9, 1, 1), moved(grid(1, 1, 100, 0.001), 1, {0, 2, 0}));
+  for (const bool square : {false, true}) {
+    UnwrapOptions options{{.page_size = 512, .square = square}};
+    options.charts.min_fill = 0.72;
+    std::string said;
+    Context context;
+    context.warn = [&](std::string_view line) { said += line; };
+    auto scaled = unwrap_mesh(view_of(shape), options, context);
+    ASSERT_TRUE(scaled.ok()) << scaled.status().message();
+    EXPECT_GT(scaled->utilization, 0.6) << square;
+    const std::uint32_t strip = scaled->charts.triangle_chart.back();
+    for (const ChartPlacement& p : scaled->placements) {
+      const double share = p.texels_per_unit.x / scaled->texels_per_unit;
+      if (p.chart == strip) {
+        EXPECT_LT(share, 0.02);
+      } else {
+        EXPECT_DOUBLE_EQ(share, 1);
+      }
+    }
+    EXPECT_NE(said.find(fmt::format("charts[{}] of 2 triangles", strip)), std::string::npos)
+        << said;
+
+    options.texels_per_unit = scaled->texels_per_unit;
+    const UnwrappedMesh asked = unwrap(shape, options);
+    for (const ChartPlacement& p : asked.placements)
+      EXPECT_DOUBLE_EQ(p.texels_per_unit.x, asked.texels_per_unit);
+  }
 }
 
 // A single sheet as large as four pages.
@@ -226,6 +260,41 @@ TEST(FillPages, ChartsWhosePiecesHaveNoRoomStayWhole) {
   for (const std::int32_t padding : {8, 12, 16}) {
     const UnwrapOptions wide{{.pages = 2, .page_size = 64, .padding = padding}};
     EXPECT_EQ(unwrap(grid(16, 16), wide).charts.charts.size(), 1u) << padding;
+  }
+}
+
+// The time is for all ways of cutting together, and never gives less than the default.
+TEST(FillPages, BestKeepsToItsTime) {
+  const Shape shape = together(torus(48, 24), moved(star_prism(10), 1, {3, 0, 0}));
+  constexpr double kEnough = 0.9;  // seconds
+  Context one;
+  one.threads = 1;
+  for (const std::uint32_t pages : {1u, 2u}) {
+    double standard = 0;
+    for (const double budget : {0.0, 0.3, kEnough}) {
+      LayoutOptions options{{.pages = pages, .page_size = 512, .square = true}};
+      options.minimum_side = 0;
+      options.outlines = true;
+      if (budget > 0) {
+        options.preset = PackPreset::best;
+        options.time_budget = budget;
+      }
+      auto charts = make_charts(view_of(shape), {}, one);
+      ASSERT_TRUE(charts.ok());
+      const double density = filling_density(*charts, 512.0 * 512 * pages);
+      const double begun = cpu_seconds(), wall = wall_seconds();
+      const auto layout = fill_pages({view_of(shape), {}, density}, options, *charts, one);
+      const double spent = cpu_seconds() - begun;
+      ASSERT_TRUE(layout.ok()) << layout.status().message();
+      if (budget == 0) {
+        standard = layout->scale;
+        continue;
+      }
+      EXPECT_LE(spent, 1.2 * budget + kSlowness * 0.05) << pages;
+      if (budget < kEnough) continue;
+      EXPECT_GE(wall_seconds() - wall, budget / 2) << pages;
+      EXPECT_GE(layout->scale, standard) << pages;
+    }
   }
 }
 

@@ -20,6 +20,9 @@ constexpr std::int32_t kUnweighed = std::numeric_limits<std::int32_t>::max();
 constexpr std::uint32_t kVainRounds = 100;
 // A strip becomes lower by this share of its height at a time, and by one row at least.
 constexpr std::int32_t kShrink = 200;
+// The search ends when it has spent this share of its work since it last made the strip lower. 47
+// meshes fill 0.7266 of their pages, with all of the work 0.7270 and with a third of it 0.7252.
+constexpr double kMostVain = 0.5;
 // For each move: columns of places that are drawn from the whole strip, columns drawn near the
 // piece, and the number of places that are refined.
 constexpr int kFarColumns = 40, kNearColumns = 15;
@@ -69,7 +72,9 @@ class OverlapSearch {
         random_(options.seed) {}
 
   std::uint64_t run(const Context& context) {
-    while (work_ < options_.work && !context.cancelled() && wall_seconds() < options_.deadline) {
+    const auto vain = std::uint64_t(kMostVain * double(options_.work));
+    while (work_ < std::min(options_.work, lowered_ + vain) && !context.cancelled() &&
+           wall_seconds() < options_.deadline) {
       if (pairs_.total() == 0) {
         if (height_ < nest_.used_height) take();
         if (height_ <= options_.low_enough || !lower()) break;
@@ -117,6 +122,7 @@ class OverlapSearch {
     for (const std::uint32_t i : pairs_.taking_part())
       nest_.used_height = std::max(nest_.used_height, places_[i].at.y + mask(i).height);
     height_ = nest_.used_height;
+    lowered_ = work_;
   }
 
   // Makes the strip lower and pushes the pieces into it. Returns false if a piece is too large.
@@ -270,7 +276,7 @@ class OverlapSearch {
   std::vector<std::uint32_t> order_;
   std::int64_t least_ = 0;  // overlap of kept_
   std::uint32_t vain_ = 0;
-  std::uint64_t work_ = 0;
+  std::uint64_t work_ = 0, lowered_ = 0;  // by now, and when the strip last became lower
 };
 
 }  // namespace

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <map>
 #include <optional>
 #include <string>
@@ -138,9 +139,11 @@ TEST(ExportOptions, OfTexturesAndTheMesh) {
   EXPECT_EQ(p.simplify_slip, 0.5);
   EXPECT_TRUE(p.exr);
   EXPECT_EQ(p.png_compression, 8);
+  EXPECT_DOUBLE_EQ(parsed({"--packing", "best", "--budget", "500ms"}).options.time_budget, 0.5);
   const ExportOptions plain = parsed({}).options;
   EXPECT_TRUE(plain.more_mip_levels && plain.follow_textures && plain.outlines && plain.simplify &&
               plain.measure_error);
+  EXPECT_TRUE(std::isinf(plain.time_budget));
   EXPECT_FALSE(plain.exr || plain.square_plain_page || plain.charts_only || plain.keep_scene);
 }
 

@@ -66,6 +66,7 @@ TEST_F(AtlasExport, OptionsOutOfRange) {
   // Options that would have no effect.
   expect_refusal(scene, "--uv-aspect requires --keep-uv-charts", "--uv-aspect 2");
   expect_refusal(scene, "--charts-only excludes --exr", "--charts-only --exr");
+  expect_refusal(scene, "--budget is for --packing best (give both or none)", "--budget 1s");
   expect_refusal(scene, "/dev/stdout is standard output", "--report -");
 }
 
@@ -79,7 +80,8 @@ TEST_F(AtlasExport, AbsurdNumbers) {
         "--white -1",        "--exposure 1e9",    "--slip inf",
         "--shifts 0",        "--mips 9",          "--uv-aspect 0",
         "--bake x",          "--preset good",     "--memory 1",
-        "--unit 0",          "--threshold nan",   "--bogus"}) {
+        "--unit 0",          "--threshold nan",   "--bogus",
+        "--budget -1s"}) {
     expect_refusal(scene, option.substr(0, option.find(' ')), option);
   }
   expect_refusal(scene, "more than the side of a square", "-q --texel 1km");
