@@ -128,8 +128,11 @@ TEST_F(C, SeamsKeepAwayFromHighWeights) {
         libatlas_get_seams(context(), atlas.get(), unwrapped.get(), 1, seams.data(), seams.size()),
         LIBATLAS_OK);
     EXPECT_NE(std::count(seams.begin(), seams.end(), 1), 0);
-    for (std::size_t h = 0; h < seams.size(); ++h)
-      if (seams[h]) EXPECT_LE(side * tube.positions[tube.indices[h]].x, 1e-6) << h;
+    for (std::size_t h = 0; h < seams.size(); ++h) {
+      if (seams[h]) {
+        EXPECT_LE(side * tube.positions[tube.indices[h]].x, 1e-6) << h;
+      }
+    }
     weights[3] = NAN;
     EXPECT_EQ(libatlas_add_mesh(context(), atlas.get(), &mesh, nullptr), LIBATLAS_BAD_INPUT);
     EXPECT_NE(message().find("mesh 2: vertex 3: seam weight nan"), std::string::npos) << message();
