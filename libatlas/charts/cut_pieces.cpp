@@ -1,13 +1,12 @@
 #include "libatlas/charts/cut_pieces.h"
 
 #include <algorithm>
-#include <cmath>
+#include <compare>
 #include <iterator>
 #include <mutex>
 
-#include "libatlas/charts/merging/merge_options.h"
+#include "libatlas/charts/mesh/border_weight.h"
 #include "libatlas/charts/mesh/pieces.h"
-#include "libatlas/charts/seams/refine.h"
 #include "libatlas/charts/segment.h"
 #include "libatlas/core/clock.h"
 #include "libatlas/core/degrees.h"
@@ -37,24 +36,24 @@ int attempts_for(const FlattenInput& mesh) {
   return polygons ? kBestAttempts : 1;
 }
 
-// Returns what each piece's charts cost, as when cells are merged (MergeOptions): their seams, and
-// as much again for each chart as a seam of chart_worth.
-std::vector<double> costs(const FlattenInput& mesh, const Partition& partition,
-                          std::span<const FlatChart> charts) {
+// The cost of a piece's charts; less is better.
+struct Cost {
+  std::size_t charts = 0;
+  double seams = 0;  // border_weight
+  auto operator<=>(const Cost&) const = default;
+};
+
+std::vector<Cost> costs(const FlattenInput& mesh, const Partition& partition,
+                        std::span<const FlatChart> charts) {
   const Topology& topology = mesh.topology;
-  const MergeOptions worth = merge_options(mesh.options.max_stretch);
   const double crease_angle = radians(mesh.options.crease_degrees);
-  std::vector<double> costs(topology.component_count), areas(topology.component_count);
+  std::vector<Cost> costs(topology.component_count);
+  for (const FlatChart& chart : charts) ++costs[chart.piece(topology)].charts;
   for (std::uint32_t h = 0; h < topology.opposite.size(); ++h) {
     const std::uint32_t o = topology.opposite[h];
-    if (h % 3 == 0) areas[topology.component[h / 3]] += topology.areas[h / 3];
     if (o == kNoIndex || partition.chart[h / 3] == kNoIndex) continue;
     if (partition.chart[h / 3] == partition.chart[o / 3] && !partition.seam(h)) continue;
-    costs[topology.component[h / 3]] += 0.5 * border_weight(topology, h, crease_angle);
-  }
-  for (const FlatChart& chart : charts) {
-    const std::uint32_t p = chart.piece(topology);
-    costs[p] += worth.chart_worth * std::sqrt(areas[p]);
+    costs[topology.component[h / 3]].seams += 0.5 * border_weight(topology, h, crease_angle);
   }
   return costs;
 }
@@ -65,7 +64,7 @@ class BestCharts {
   explicit BestCharts(const FlattenInput& mesh) : mesh_(mesh), topology_(mesh.topology) {}
 
   void take(const Partition& partition, FlattenResult flat) {
-    const std::vector<double> made = costs(mesh_, partition, flat.charts);
+    const std::vector<Cost> made = costs(mesh_, partition, flat.charts);
     const bool first = least_.empty();
     least_.resize(made.size());
     best_.splits.resize(made.size());
@@ -89,7 +88,7 @@ class BestCharts {
   const FlattenInput& mesh_;
   const Topology& topology_;
   FlattenResult best_;
-  std::vector<double> least_;  // one per piece
+  std::vector<Cost> least_;  // one per piece
 };
 
 // Cuts the whole mesh at once.

@@ -10,6 +10,7 @@
 #include "libatlas/charts/flattening/fitting_run.h"
 #include "libatlas/charts/flattening/joint.h"
 #include "libatlas/charts/merging/merge_options.h"
+#include "libatlas/charts/mesh/border_weight.h"
 #include "libatlas/core/degrees.h"
 #include "libatlas/core/glm_bridge.h"
 #include "libatlas/core/portable_math.h"

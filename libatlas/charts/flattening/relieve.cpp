@@ -8,7 +8,7 @@
 #include "libatlas/charts/flattening/chart_job.h"
 #include "libatlas/charts/flattening/split.h"
 #include "libatlas/charts/merging/merge_options.h"
-#include "libatlas/charts/seams/refine.h"
+#include "libatlas/charts/mesh/border_weight.h"
 #include "libatlas/core/degrees.h"
 #include "libatlas/core/parallel.h"
 #include "libatlas/param/distortion.h"

@@ -8,7 +8,7 @@
 #include "libatlas/charts/cells/tips.h"
 #include "libatlas/charts/merging/fan_centre.h"
 #include "libatlas/charts/merging/unroll.h"
-#include "libatlas/charts/seams/refine.h"
+#include "libatlas/charts/mesh/border_weight.h"
 #include "libatlas/core/degrees.h"
 #include "libatlas/core/glm_bridge.h"
 

@@ -6,7 +6,7 @@
 #include <limits>
 #include <queue>
 
-#include "libatlas/charts/seams/refine.h"
+#include "libatlas/charts/mesh/border_weight.h"
 
 namespace atlas {
 namespace {

@@ -18,12 +18,6 @@ void move_triangle(const Topology& topology, std::uint32_t h, Partition& partiti
 // Whether the chart of t stays connected without t, judged from the triangles around t's corners.
 bool removable(const Topology& topology, const Partition& partition, std::uint32_t t);
 
-// Returns what a linked edge costs in a seam: its length times the user's weight, less in
-// proportion to its bend, down to a quarter at `crease_angle` (radians) and beyond, where a seam
-// does not show; many times as much inside a polygon. All steps that make, move or remove seams
-// compare them by this.
-double border_weight(const Topology& topology, std::uint32_t half_edge, double crease_angle);
-
 // A limit on charts' normals. No limit if `axes` is empty.
 struct ConeLimit {
   std::span<const Vec3f> axes;  // by Partition::chart

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <utility>
 
+#include "libatlas/charts/mesh/border_weight.h"
 #include "libatlas/charts/mesh/chart_fans.h"
 #include "libatlas/charts/seams/band_paths.h"
 #include "libatlas/core/degrees.h"

@@ -6,6 +6,7 @@
 #include <limits>
 #include <utility>
 
+#include "libatlas/charts/mesh/border_weight.h"
 #include "libatlas/core/degrees.h"
 #include "libatlas/core/glm_bridge.h"
 
