@@ -15,7 +15,7 @@
 namespace atlas {
 namespace {
 
-constexpr int kPoints = 24576, kRays = 16, kNeeded = 10;
+constexpr int kPoints = 8192, kRays = 16, kNeeded = 10;
 // The share of the observers that stand where nobody looks around: under seats, between furniture.
 constexpr double kShortSighted = 0.5;
 // The size of a voxel in spacings of the samples. Samples lie about one spacing apart. A wall has
