@@ -76,12 +76,19 @@ test("charts stay like those of an earlier result, and what was edited is named"
   const { uvs, indices: uvIndices, trianglePage } = before;
   const like = { ...mesh, uvs, uvIndices, trianglePage, pages };
   const indices = mesh.indices.filter((_, i) => i < removed || i >= removed + 3);
-  const { meshes: [now], charts } = atlas.unwrap({ ...mesh, indices }, { like });
+  const { meshes: [now], charts, pages: grown } = atlas.unwrap({ ...mesh, indices }, { like });
+  const side = ["width", "height"], kept = 2;
+  let same = 0;
   now.indices.forEach((v, i) => {
+    if (charts.origins[now.triangleChart[Math.floor(i / 3)]] !== kept) return;
     const was = before.indices[i < removed ? i : i + 3];
-    for (const k of [0, 1]) assert.equal(now.uvs[2 * v + k], before.uvs[2 * was + k]);
+    for (const k of [0, 1]) {
+      const texels = [now.uvs[2 * v + k] * grown[0][side[k]], before.uvs[2 * was + k] * pages[0][side[k]]];
+      assert.ok(Math.abs(texels[0] - texels[1]) < 0.01, texels);
+    }
+    ++same;
   });
-  assert.deepEqual([...charts.origins].sort(), [1, ...Array(charts.origins.length - 1).fill(2)]);
+  assert.ok(same > now.indices.length / 4 && same < now.indices.length);
   assert.equal(atlas.unwrap(mesh).charts.origins.length, 0);
   const refused = (wrong, message) =>
     assert.throws(() => atlas.unwrap(mesh, { like: { ...like, ...wrong } }), { name: "BadInputError", message });

@@ -75,7 +75,7 @@ def test_marked_seams_are_seams():
 
 
 def test_seams_keep_away_from_high_weights():
-    vertices, faces = torus(60, 30)
+    vertices, faces = torus(40, 24)
     heavy = vertices[:, 0] > 0
     ends = vertices[faces], vertices[np.roll(faces, -1, 1)]
     length, side = np.linalg.norm(ends[0] - ends[1], axis=2), ends[0][..., 0] + ends[1][..., 0] > 0
