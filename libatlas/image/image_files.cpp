@@ -72,11 +72,12 @@ ImageClaim spec_claim(const OIIO::ImageInput& input) {
 // Refuses rows so long that OpenImageIO would take gigabytes: it takes memory for 256 rows at once,
 // or for a strip of a TIFF, also where an image has two rows.
 Status check_rows(const Source& source) {
-  constexpr std::uint64_t kLongestRow = 4 << 20, kLargestStrip = std::uint64_t{1} << 34;  // bytes
+  constexpr std::uint64_t kLongestRow = 4 << 20, kLargestStrip = 1 << 30;  // bytes
   const OIIO::ImageSpec& spec = source.input->spec();
   const std::uint64_t row = spec.scanline_bytes(true);
   const int strip = std::max(spec.get_int_attribute("tiff:RowsPerStrip", 1), 1);
-  if (row <= kLongestRow && row <= kLargestStrip / std::uint64_t(strip)) return {};
+  const bool small = strip <= spec.height || row <= kLargestStrip / std::uint64_t(strip);
+  if (row <= kLongestRow && small) return {};
   return {
       ErrorCode::unsupported,
       fmt::format("{}: its rows are {} texels long, in strips of {}, which is too much to read: "
