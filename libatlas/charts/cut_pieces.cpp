@@ -61,7 +61,7 @@ std::vector<Cost> costs(const FlattenInput& mesh, const Partition& partition,
 // The best charts of each piece in several attempts.
 class BestCharts {
  public:
-  explicit BestCharts(const FlattenInput& mesh) : mesh_(mesh), topology_(mesh.topology) {}
+  explicit BestCharts(const FlattenInput& mesh) : mesh_(mesh) {}
 
   void take(const Partition& partition, FlattenResult flat) {
     const std::vector<Cost> made = costs(mesh_, partition, flat.charts);
@@ -75,7 +75,9 @@ class BestCharts {
       least_[piece] = made[piece];
       best_.splits[piece] = flat.splits[piece];
     }
-    const auto changes = [&](const FlatChart& chart) { return better[chart.piece(topology_)]; };
+    const auto changes = [&](const FlatChart& chart) {
+      return better[chart.piece(mesh_.topology)];
+    };
     std::erase_if(best_.charts, changes);
     std::copy_if(std::move_iterator(flat.charts.begin()), std::move_iterator(flat.charts.end()),
                  std::back_inserter(best_.charts), changes);
@@ -86,7 +88,6 @@ class BestCharts {
 
  private:
   const FlattenInput& mesh_;
-  const Topology& topology_;
   FlattenResult best_;
   std::vector<Cost> least_;  // one per piece
 };

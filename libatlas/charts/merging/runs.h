@@ -9,10 +9,10 @@
 
 namespace atlas {
 
-// Of several separate runs of the common border `glue`, keeps the longest (its length times its
-// weight); the rest becomes a seam of the chart with itself. Returns false if there is only one
-// run. Runs also end at the points `forks`, where a seam ends: otherwise the chart would close
-// around such a point.
+// Of several separate runs of the common border `glue`, keeps the one that costs most as a
+// seam (border_weight); the rest becomes a seam of the chart with itself. Returns false if there is
+// only one run. Runs also end at the points `forks`, where a seam ends: otherwise the chart would
+// close around such a point.
 bool keep_longest_run(const CoarseMesh& mesh, std::span<const Vec3d> forks,
                       std::vector<std::uint32_t>& glue);
 
