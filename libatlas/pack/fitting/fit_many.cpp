@@ -13,8 +13,6 @@
 #include "libatlas/pack/fitting/fit_result.h"
 #include "libatlas/pack/nesting/grid_choice.h"
 #include "libatlas/pack/nesting/nest.h"
-#include "libatlas/pack/nesting/pairs.h"
-#include "libatlas/pack/nesting/rows.h"
 
 namespace atlas::pack {
 namespace {
@@ -134,14 +132,21 @@ class ManyCharts {
     return options;
   }
 
+  void find_joins() const {
+    Joins& joins = *charts_.joins;
+    if (joins.found) return;
+    joins = {true, find_pairs(charts_.outlines, context_), find_rows(charts_.outlines, context_)};
+  }
+
   // Joins charts in pairs, and if there are copies of charts, also in rows of several lengths.
   void find_ways(bool any_angle) {
     Way way;
     way.joined.assign(charts_.items.size(), false);
-    if (any_angle) way.pairs = find_pairs(charts_.outlines, context_);
+    if (any_angle) find_joins();
+    way.pairs = charts_.joins->pairs;
     for (const ChartPair& p : way.pairs) way.joined[p.first] = way.joined[p.second] = true;
     ways_.push_back(way);
-    if (any_angle) way.rows = find_rows(charts_.outlines, context_);
+    way.rows = charts_.joins->rows;
     double in_rows = 0;
     for (const RowPlan& r : way.rows)
       in_rows += double(r.alike.charts.size()) * charts_.outlines[r.alike.charts[0]].area;

@@ -259,7 +259,8 @@ void take_better(std::optional<FitResult> next, const FitOptions& options,
 // pages of given shape, it looks for scales above `known` only. Returns nothing if there is none.
 std::optional<FitResult> fit_on_cells(const FitCharts& charts, const FitSearchOptions& options,
                                       double known, const Context& context) {
-  const auto [items, outlines] = charts;
+  const auto items = charts.items;
+  const auto outlines = charts.outlines;
   FitSearchOptions by_quarters = options;
   by_quarters.rotations = std::min(options.rotations, 4u);
   OutlineFit quarters(items, outlines, by_quarters, context);

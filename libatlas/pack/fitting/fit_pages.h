@@ -1,9 +1,13 @@
 // Internal: the ways to fit charts to pages: by boxes, by outlines, and by pressing outlines.
 #pragma once
 
+#include <memory>
 #include <optional>
+#include <vector>
 
 #include "libatlas/pack/fitting/fit_search.h"
+#include "libatlas/pack/nesting/pairs.h"
+#include "libatlas/pack/nesting/rows.h"
 #include "libatlas/pack/outlines/chart_outline.h"
 
 namespace atlas::pack {
@@ -12,10 +16,18 @@ namespace atlas::pack {
 Result<FitResult> fit_boxes(std::span<const FitItem> items, const FitOptions& options,
                             const Context& context);
 
+// How charts may be joined, which is the same at each scale: the first search that asks finds it.
+struct Joins {
+  bool found = false;
+  std::vector<ChartPair> pairs;
+  std::vector<RowPlan> rows;
+};
+
 // Charts given by their outlines, which have an item each.
 struct FitCharts {
   std::span<const FitItem> items = {};
   std::span<const ChartOutline> outlines = {};
+  std::shared_ptr<Joins> joins = std::make_shared<Joins>();
 };
 
 // Does fit_pages for charts given by their outlines. The arguments must have been checked. The

@@ -21,7 +21,8 @@ bool may_be_pressed(std::span<const ChartOutline> outlines, const FitSearchOptio
 
 std::optional<FitResult> fit_pressed(const FitCharts& charts, const FitSearchOptions& options,
                                      const Context& context) {
-  const auto [items, outlines] = charts;
+  const auto items = charts.items;
+  const auto outlines = charts.outlines;
   if (!may_be_pressed(outlines, options)) return std::nullopt;
   const bool straight = outlines.size() > 1 && is_straight(outlines);
   PressedPage pressed = straight && options.free_aspect

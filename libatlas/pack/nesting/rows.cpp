@@ -66,9 +66,9 @@ class EndlessRow {
     }
   }
 
-  // Returns how far apart such rows lie above each other at least, over all shifts along them.
-  std::int32_t distance() const {
-    std::int32_t least = std::numeric_limits<std::int32_t>::max();
+  // Returns how far apart such rows lie above each other at least, over all shifts along them; at
+  // most `least`.
+  std::int32_t distance(std::int32_t least) const {
     for (std::size_t shift = 0; shift < top_.size(); ++shift) {
       std::int32_t apart = 1;
       for (std::size_t c = 0, d = shift; c < top_.size() && apart < least; ++c) {
@@ -97,7 +97,8 @@ RowChoice densest_rows(const Mask& mask) {
   const std::int32_t alone = std::max(1, *push_in(mask, mask, 0));
   EndlessRow single(alone);
   single.add(upright, 0, 0);
-  RowChoice best{double(mask.cells) / (double(alone) * single.distance()), false, 0};
+  constexpr auto kAny = std::numeric_limits<std::int32_t>::max();
+  RowChoice best{double(mask.cells) / (double(alone) * single.distance(kAny)), false, 0};
   for (std::int32_t rise = 1 - mask.height; rise < mask.height; ++rise) {
     const auto there = push_in(mask, other, rise), back = push_in(other, mask, -rise);
     if (!there || !back) continue;
@@ -105,7 +106,10 @@ RowChoice densest_rows(const Mask& mask) {
     EndlessRow row(period);
     row.add(upright, 0, 0);
     row.add(turned, *there, rise);
-    const double density = 2 * double(mask.cells) / (double(period) * row.distance());
+    // Rows that lie farther apart are not denser than the best ones.
+    const double cells = 2 * double(mask.cells) / period;
+    const auto farthest = std::int32_t(std::ceil(cells / best.density));
+    const double density = cells / row.distance(farthest);
     // Of equal rows, those that alternate least are taken.
     if (density > best.density * (1 + 1e-9)) best = {density, true, rise};
   }
