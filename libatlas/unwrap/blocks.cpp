@@ -17,6 +17,8 @@ namespace {
 constexpr int kRounds = 24, kFreeRounds = 6;
 constexpr double kNear = 1.02, kShortOf = 0.98, kMostGrowth = 8;
 constexpr int kHalvings = 12;
+// Where half the density leaves rectangles this share of their texels, gutters are what is left.
+constexpr double kGuttersLeft = 0.98;
 // The share of the pages that the first density would fill.
 constexpr double kFirstFill = 0.6;
 
@@ -46,6 +48,7 @@ class BlockPacker {
       if (!scale.ok()) return scale.status();
       const bool fits = *scale >= 1;
       if (fits && last) return finish();
+      if (!fits && !may_shrink()) break;
       last = last || (fits && (!free || *scale < kNear || round >= kFreeRounds));
       if (!fits || !last) density *= fits ? *scale : std::max(*scale, 1 / kMostGrowth) * kShortOf;
     }
@@ -112,6 +115,16 @@ class BlockPacker {
       }
     }
     return {};
+  }
+
+  // Returns whether the rectangles, which do not fit, have become smaller with their density.
+  bool may_shrink() {
+    double texels = 0;
+    for (const Extent& e : extents(1)) texels += double(e.area());
+    const bool may = density_ > failed_density_ / 2 || texels < kGuttersLeft * failed_texels_;
+    failed_density_ = density_;
+    failed_texels_ = texels;
+    return may;
   }
 
   bool instances_differ() const {
@@ -232,6 +245,8 @@ class BlockPacker {
   Context quiet_;
   std::vector<ChartSet> charts_;  // of each mesh, before they are cut for a page
   double density_ = 0;            // of placed_
+  // Of the last rectangles that did not fit.
+  double failed_density_ = 0, failed_texels_ = 0;
   std::vector<UnwrappedMesh> placed_;
 };
 

@@ -174,5 +174,21 @@ TEST(Instances, UnusableOnesAreRefusedByNumber) {
   EXPECT_EQ(atlas.unwrap(options, {}).status().code(), ErrorCode::bad_option);
 }
 
+// Where gutters alone are too much, a lower density is of no use, and is not tried over and over.
+TEST(Instances, GuttersThatDoNotFitAreSeenSoon) {
+  Atlas atlas;
+  const Shape triangles = soup(150, 1);
+  ASSERT_TRUE(atlas.add_instances(view_of(triangles), 40).ok());
+  Context context;
+  double farthest = 0;
+  context.progress = [&](std::string_view stage, double fraction) {
+    if (stage == "packing") farthest = std::max(farthest, fraction);
+  };
+  UnwrapOptions options{{.page_size = 256}};
+  EXPECT_EQ(atlas.unwrap(options, context).status().code(), ErrorCode::no_solution);
+  EXPECT_GT(farthest, 0);
+  EXPECT_LT(farthest, 0.5);
+}
+
 }  // namespace
 }  // namespace atlas::test
