@@ -102,11 +102,12 @@ Start StripSearch::lowest_order(const Problem& problem) {
   Start lowest;
   for (Order order :
        {Order::area, Order::height, Order::width, Order::max_side, Order::perimeter}) {
-    std::vector<std::uint32_t> sequence = sorted_items(problem.items, order), scratch = sequence;
+    const std::vector<std::uint32_t> sequence = sorted_items(problem.items, order);
+    std::vector<std::uint32_t> scratch = sequence;
     fill.clear();
     const std::int64_t height = fill.fill(scratch);
     ++result_.layouts_tried;
-    if (height < lowest.height) lowest = {std::move(sequence), height, fill.placed()};
+    if (height < lowest.height) lowest = {sequence, height, fill.placed()};
   }
   return lowest;
 }
