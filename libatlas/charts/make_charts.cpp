@@ -7,7 +7,6 @@
 #include "libatlas/charts/assemble_charts.h"
 #include "libatlas/charts/charts.h"
 #include "libatlas/charts/filling/limbs.h"
-#include "libatlas/charts/filling/long_charts.h"
 #include "libatlas/charts/flattening/flatten.h"
 #include "libatlas/charts/given_uvs.h"
 #include "libatlas/charts/mesh/canonical_mesh.h"
@@ -63,7 +62,6 @@ std::vector<FlatChart> cut_charts(const Work& work, const Context& context, Char
   Frames none;
   const FlattenInput input{work.topology, work.mesh.density, work.options, none};
   cut_limbs(input, cut.charts, context);
-  cut_long_charts(input, cut.charts, context);
   set.timing.limbs_cpu = watch.lap();
   return std::move(cut.charts);
 }

@@ -26,8 +26,6 @@ namespace atlas {
 namespace param {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
-
 // Writes the projection along `axis` to uvs. Returns its distortion if that is within the bound.
 std::optional<Distortion> project(const LocalMesh& mesh, Vec3d axis, double bound,
                                   std::span<Vec2d> uvs) {
@@ -157,9 +155,9 @@ ParamResult flatten_disc(const LocalMesh& mesh, const FlattenOptions& options,
   ArapSolver solver(mesh, {.min_altitude = options.min_altitude}, workspace.impl());
   const auto descend_from = [&](const IsometricStart& from, ParamResult& to) {
     solver.start(from);
-    const double fall = solver.iterate(std::max(options.iterations, 1), to.uvs);
+    solver.iterate(std::max(options.iterations, 1), to.uvs);
     solver.rest();
-    Descent(mesh, options, solver, clock).run(FirstUvs::solved, fall, to);
+    Descent(mesh, options, solver, clock).run(FirstUvs::solved, to);
   };
   descend_from(start, r);
   const bool unfolded = start.uvs.empty() && !start.frames;
@@ -178,7 +176,7 @@ ParamResult resume_flattening(const LocalMesh& mesh, std::span<const Vec2d> uvs,
   r.uvs.assign(uvs.begin(), uvs.end());
   ArapSolver solver(mesh, {.min_altitude = options.min_altitude}, workspace.impl());
   solver.rest();
-  Descent(mesh, options, solver, clock).run(FirstUvs::resumed, kInfinity, r);
+  Descent(mesh, options, solver, clock).run(FirstUvs::solved, r);
   return r;
 }
 
@@ -196,7 +194,7 @@ ParamResult join_flat_parts(const LocalMesh& mesh, const FlatParts& parts,
     solver.join(parts.corner_uvs, r.uvs);
   }
   solver.rest();
-  Descent(mesh, options, solver, clock).run(FirstUvs::joined, kInfinity, r);
+  Descent(mesh, options, solver, clock).run(FirstUvs::joined, r);
   return r;
 }
 

@@ -71,23 +71,6 @@ TEST(Absorb, AUnionMustBeWorthItsStretch) {
   }
 }
 
-// A hill is given as vertical strips, of which none is small. Two of them are tried as one chart.
-TEST(Absorb, TwoChartsOfAPieceAreTriedAsOne) {
-  constexpr int kRows = 30;
-  const Shape hill = bent(kRows, kRows, [](double u, double v) {
-    const double r = std::hypot(u - 0.5, v - 0.5);
-    return Vec3f{float(u), float(v), float(0.15 * std::exp(-12 * r * r))};
-  });
-  for (const std::uint32_t strips : {2u, 3u}) {
-    std::vector<std::uint32_t> charts;
-    for (std::uint32_t t = 0; t < hill.triangle_count(); ++t)
-      charts.push_back(t / 2 % kRows * strips / kRows);
-    const FlattenResult result = flatten(hill, charts, {});
-    EXPECT_EQ(result.split_charts(), 0u);
-    EXPECT_EQ(result.charts.size(), strips == 2 ? 1u : 3u);
-  }
-}
-
 // Two flat strips of 5 squares are one chart each, in a mesh of which they are a small part. Side
 // by side they fill their rectangle, as an L they fill about a third of it. Returns the number of
 // charts that the strips become.

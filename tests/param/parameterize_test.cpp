@@ -159,23 +159,6 @@ TEST(Parameterize, DrawsApartWhateverTheMeshesFineness) {
   }
 }
 
-TEST(Parameterize, LeavesCrossingsThatTheBoundKeepsTogether) {
-  // The same ramps under a tight bound. If an overlap can only be removed beyond the bound, the
-  // chart is reported within it, together with its crossings.
-  for (const double excess : {0.005, 0.01, 0.03}) {
-    const Disc d = testing::make_grid(120, 8, [=](double u, double v) {
-      const double a = (2 * std::numbers::pi + excess) * u, r = 1 + 0.5 * v;
-      return Vec3d{r * std::cos(a), r * std::sin(a), 0.002 * a};
-    });
-    param::FlattenOptions options{{.max_stretch = 1.01}};
-    options.leave_crossings = true;
-    const ParamResult r = run_with(d, options);
-    expect_consistent(d, r, 1.01);
-    EXPECT_TRUE(r.within_bound) << excess;
-    EXPECT_FALSE(r.crossings.empty()) << excess;
-  }
-}
-
 // Half a pipe, unrolled by its formula and stretched by a tenth. Each triangle is moved somewhere
 // else, because only the gradients count. They are kept; a descent would have made them isometric.
 TEST(Parameterize, JoinsFlatPartsAsTheyAre) {

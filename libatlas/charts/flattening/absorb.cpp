@@ -95,10 +95,6 @@ double room_in(double max_stretch) {
   return std::max(1.0, (max_stretch - 1) / (ChartOptions{}.max_stretch - 1));
 }
 
-// The most triangles of a mesh whose last two charts are tried as one. For more, the memory for the
-// union and its parts, 420 bytes a triangle, exceeds what the rest of the stage takes.
-constexpr std::size_t kMostOfPair = 400000;
-
 class Absorber {
  public:
   Absorber(const AbsorbInput& input, std::vector<FlatChart>& charts)
@@ -158,16 +154,10 @@ class Absorber {
   double piece_target(std::uint32_t k) const { return piece_target_[charts_[k].piece(topology_)]; }
   bool small(std::uint32_t k) const { return area_[k] < kSmallArea * piece_area(k); }
 
-  // Whether the piece is this chart and one other. As one chart it would have no seam at all, like
-  // an elevation model that merging left in two.
-  bool last_pair(std::uint32_t k) const {
-    return piece_charts_[charts_[k].piece(topology_)] == 2 && all_triangles() <= kMostOfPair;
-  }
-
   bool worth_a_try(std::uint32_t k) const {
     const FlatChart& chart = charts_[k];
     const std::size_t size = chart.triangles.size();
-    if (size < patience_.few || small(k) || last_pair(k)) return true;
+    if (size < patience_.few || small(k)) return true;
     return chart.fragment && (!topology_.calm_normals.empty() ||
                               double(size) <= kSmallShare * double(all_triangles()));
   }
@@ -351,7 +341,6 @@ class Absorber {
   void measure_areas() {
     const std::span<const float> densities = input_.flatten.density;
     piece_area_.assign(topology_.component_count, 0);
-    piece_charts_.assign(topology_.component_count, 0);
     piece_target_ = piece_area_;
     for (const FlatChart& chart : charts_) {
       double area = 0, target = 0;
@@ -363,7 +352,6 @@ class Absorber {
       area_.push_back(area);
       target_.push_back(target);
       piece_area_[chart.piece(topology_)] += area;
-      ++piece_charts_[chart.piece(topology_)];
       piece_target_[chart.piece(topology_)] += target;
     }
   }
@@ -385,7 +373,6 @@ class Absorber {
   std::vector<std::uint8_t> candidate_;
   std::vector<double> area_;  // one per chart: surface area
   std::vector<double> piece_area_;
-  std::vector<std::uint32_t> piece_charts_;  // one per piece: its charts before any are joined
   // The areas that uvs are to have: the same times densities squared.
   std::vector<double> target_, piece_target_;
   std::vector<Outline> outlines_;  // one per chart; empty: not known

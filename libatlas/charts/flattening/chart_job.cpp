@@ -36,10 +36,10 @@ constexpr double kMinAltitude = 1e-7;
 constexpr std::size_t kLargeChart = 20000;
 constexpr double kAimedStretch = 1.18;
 constexpr double kBestStretch = 1.12;
-// Under scan noise, each round of cutting, or of closing cuts that cross, continues from the last
-// one. These are the most rounds of both, the most that close, and the further ones that only
-// close. With half as many, or with charts divided for 8 crossings whatever their size, time and
-// charts were a tenth and a twentieth more (11 noisy meshes).
+// Under scan noise, these are the most rounds of cutting and of closing cuts that cross, the most
+// that close, and the further ones that only close. With half as many, or with charts divided for 8
+// crossings whatever their size, time and charts were a tenth and a twentieth more (11 noisy
+// meshes).
 constexpr int kMostCuts = 12, kMostClosings = 10, kLastClosings = 4;
 // Under scan noise a chart is divided if the banks of its cuts cross more often than both
 // kMostCrossingsLeft times and once for kTrianglesACrossing triangles.
@@ -89,7 +89,6 @@ class ChartJob {
         if (try_flatten(outcome)) return outcome;
         if (hopeless(cuts) || cuts_in_vain() || joins_in_vain() || tried_enough(cuts)) break;
         if (stretched_widely() && (cuts > 0 || chart_.loops.size() == 1)) break;
-        keep_uvs();
         if (!cut_open_timed(cuts)) break;
         build(task_.triangles);
       }
@@ -104,23 +103,6 @@ class ChartJob {
     chart_.build(input_.topology, partition_, triangles);
     chart_.take_density(input_.density);
     cone_ = normal_cone(input_.topology.normals, triangles);
-  }
-
-  // Keeps the uvs of the last attempt as the start of the next one, since a cut opens where it is
-  // made. Only under scan noise.
-  void keep_uvs() {
-    kept_uvs_.clear();
-    if (noisy()) kept_uvs_ = corner_uvs();
-  }
-
-  std::vector<Vec2d> corner_uvs() const {
-    std::vector<Vec2d> uvs;
-    if (result_.uvs.empty() || result_.distortion.flips > 0) return uvs;
-    uvs.reserve(3 * chart_.corners.size());
-    for (const auto& corners : chart_.corners) {
-      for (const std::uint32_t v : corners) uvs.push_back(result_.uvs[v]);
-    }
-    return uvs;
   }
 
   bool try_flatten(ChartOutcome& outcome) {
@@ -283,8 +265,6 @@ class ChartJob {
     }
     param.local = noisy() || task_.little;
     param.rough = noisy();
-    // This gives 6 in 1000 fewer charts than cutting such charts open (80 meshes).
-    param.leave_crossings = !noisy() && !task_.little;
     if (best) param.iterations = kBestIterations;
     param.max_planar_stretch =
         std::min(options.max_stretch,
@@ -297,13 +277,6 @@ class ChartJob {
   ParamResult solve(const LocalMesh& mesh) {
     ParamWorkspace& workspace = scratch_.workspace;
     param::FlattenOptions options = flatten_options(mesh.triangles.size());
-    if (!kept_uvs_.empty()) {
-      start_uvs_.resize(mesh.positions.size());
-      for (std::size_t i = 0; i < kept_uvs_.size(); ++i)
-        start_uvs_[mesh.triangles[i / 3][i % 3]] = kept_uvs_[i];
-      options.aimed_stretch = 0;  // it has been squeezed before
-      return param::resume_flattening(mesh, start_uvs_, options, workspace);
-    }
     if (!task_.joined.empty())
       return param::join_flat_parts(mesh, {task_.joined, task_.little}, options, workspace);
     if (!input_.frames.empty())
@@ -316,7 +289,7 @@ class ChartJob {
   // Lays a chart that unrolls flat, without calling the solver. Returns false if it does not
   // unroll, or would overlap itself.
   bool unroll() {
-    const bool bent = cone_.angle > kFlatCone && chart_.density.empty() && kept_uvs_.empty();
+    const bool bent = cone_.angle > kFlatCone && chart_.density.empty();
     if (!bent || !lay_unrolled()) return false;
     if (!result_.injective && !slits_closed_ &&
         close_flat_slits(input_.topology, chart_, result_.uvs, partition_)) {
@@ -389,9 +362,7 @@ class ChartJob {
   double least_stretch_ = std::numeric_limits<double>::infinity();  // of all attempts
   bool slits_closed_ = false;  // slits that opened a chart that unrolls
   NormalCone cone_;
-  ParamResult result_;            // of the last attempt
-  std::vector<Vec2d> kept_uvs_;   // one per corner, or empty: where to continue from
-  std::vector<Vec2d> start_uvs_;  // the same, one per vertex
+  ParamResult result_;  // of the last attempt
 };
 
 }  // namespace

@@ -73,12 +73,11 @@ class Trial {
   bool unrolled() const;
   bool fits_unrolled(TrialOutcome& outcome);
   bool measure_stretch(double stretch_high, TrialOutcome& outcome);
-  bool descend(const TrialLimits& limits, TrialOutcome& outcome);
+  void descend();
   // The prospects of a descent from the aligned halves: it is not needed, its outcome is open, or
   // it cannot be accepted.
   enum class Start { settled, open, hopeless };
   Start judge_start(std::size_t smaller_half, const TrialLimits& limits, TrialOutcome& outcome);
-  bool promising(const TrialLimits& limits, TrialOutcome& outcome);
   bool stretch_fits(const TrialLimits& limits, TrialOutcome& outcome);
   bool shape_fits(const TrialLimits& limits, double slack, TrialOutcome& outcome);
   Crossing border_crossing();

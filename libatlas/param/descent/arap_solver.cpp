@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 
 #include "libatlas/core/clock.h"
 #include "libatlas/param/descent/first_rotations.h"
@@ -233,7 +232,7 @@ double ArapSolver::update(std::span<const Vec2d> uvs) {
   return update_rotations(w_.elements, {uvs, options_.shear_weight}, w_.rotations, w_.load);
 }
 
-double ArapSolver::iterate(int steps, std::span<Vec2d> uvs) {
+void ArapSolver::iterate(int steps, std::span<Vec2d> uvs) {
   wake(uvs);
   if (!factorized_) factorize();
   if (guess_.empty()) {
@@ -245,9 +244,7 @@ double ArapSolver::iterate(int steps, std::span<Vec2d> uvs) {
   take_guess(uvs);
   solve({steps == 1 ? fine : first_inexactness, 0}, uvs);
   bool exact = true;
-  double fall = std::numeric_limits<double>::infinity();
-  for (int i = 1;; ++i) {
-    if (i >= steps) return fall;
+  for (int i = 1; i < steps; ++i) {
     if (i == 1 && method_ == Method::multigrid) {
       exact = !energy_exceeds(may_unroll * area_, w_.elements, uvs);
       if (exact) {
@@ -255,9 +252,8 @@ double ArapSolver::iterate(int steps, std::span<Vec2d> uvs) {
         solve({exact_first, 0}, uvs);
       }
     }
-    fall = update(uvs) / area_;
-    const bool still = fall <= converged;
-    if (still && method_ != Method::multigrid) return fall;
+    const bool still = update(uvs) <= converged * area_;
+    if (still && method_ != Method::multigrid) return;
     if (still) steps = i + 1;
     const bool last = i + 1 == steps;
     const Inexactness rough{fine, last ? fine_share : rough_share};

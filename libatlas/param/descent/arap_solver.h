@@ -31,9 +31,8 @@ class ArapSolver {
   // minimized, so any step up to twice as long as that to its minimum descends (Salakhutdinov and
   // Roweis 2003, "Adaptive overrelaxed bound optimization methods"). The long steps exceed that and
   // may raise the energy; the step after each more than mends this, and slowly converging parts
-  // take fewer steps. Returns by how much the last local step lowered the energy, as a share of the
-  // area; infinite if there was none.
-  double iterate(int steps, std::span<Vec2d> uvs);
+  // take fewer steps.
+  void iterate(int steps, std::span<Vec2d> uvs);
 
   // Lowers the stretch that 99.9 % of the area stays within: triangles are weighted by a power of
   // their stretch and the system is solved again (iteratively reweighted least squares towards the

@@ -13,24 +13,11 @@ namespace {
 
 using Phase = ParamWorkspace::Timing;
 
-// A chart with at most this mean stretch can be unrolled, and a few more steps do it exactly.
-constexpr double kUnrolls = 1 + 1e-4, kUnrolled = 1 + 2e-4;
-constexpr double kUnrollsExactly = 1 + 2e-6, kUnrolledStretch = 1.001;
-constexpr int kUnrollingRounds = 4;
-// In the last step, the energy must have fallen by more than this multiple of the L2 stretch minus
-// 1. Of 60 charts of more than 400 triangles where it fell by less, none came down by more than a
-// fifth in a round.
-constexpr double kUnrollingFall = 3;
-
 // On rough surfaces, borders that cross themselves in more places can hardly ever be moved apart,
 // and closing the cuts that cross is cheaper: with 16, eight noisy meshes took a quarter more time
 // for as many charts. Charts on trial as one (FlatParts) are then given up: further attempts would
 // have removed 50 of 17 100 charts, for a quarter of the time that joining takes (208 meshes).
 constexpr std::size_t kMostSeparable = 2;
-
-// Flat parts that stretch by this multiple of the bound when they are joined never came within it
-// (measured).
-constexpr double kPoorJoint = 1.75;
 
 // With a bound this tight, charts still folded after flips were removed never came within it (25
 // charts of 170 meshes).
@@ -68,12 +55,12 @@ Descent::Descent(const LocalMesh& mesh, const FlattenOptions& options, ArapSolve
                  PhaseClock& clock)
     : mesh_(mesh), options_(options), solver_(solver), clock_(clock) {}
 
-void Descent::run(FirstUvs from, double fall, ParamResult& r) {
+void Descent::run(FirstUvs from, ParamResult& r) {
   from_ = from;
   aim_ =
       options_.aimed_stretch > 0 && !options_.local ? options_.aimed_stretch : options_.max_stretch;
   clock_.book(&Phase::solve);
-  const std::optional<Distortion> last = lower_stretch(fall, r);
+  const std::optional<Distortion> last = lower_stretch(r);
   clock_.book(&Phase::solve);
   judge(mesh_, options_, r, last ? &*last : nullptr);
   clock_.book(&Phase::overlaps);
@@ -84,19 +71,15 @@ void Descent::run(FirstUvs from, double fall, ParamResult& r) {
 
 // Lowers the stretch to the aim, as far as that is worth it. Returns the distortion of r.uvs if it
 // is at the aim.
-std::optional<Distortion> Descent::lower_stretch(double fall, ParamResult& r) {
+std::optional<Distortion> Descent::lower_stretch(ParamResult& r) {
   turn_flips(r);
   clock_.book(&Phase::flips);
   if (options_.squeeze_iterations <= 0) return {};
   Distortion now = measure_distortion(mesh_, r.uvs);
   if (now.flips > 0 && options_.max_stretch <= kTightBound) return {};
-  if (may_unroll(r, now)) {
-    now = unroll(fall, now, r.uvs);
-    if (now.stretch_l2 < kUnrollsExactly) aim_ = std::min(aim_, kUnrolledStretch);
-  }
   if (now.stretch_999 <= aim_) return now;
   if (options_.local) {
-    if (worth_relaxing(now)) lower_tail(r);
+    lower_tail(r);
   } else if (worth_squeezing(now, r.uvs)) {
     squeeze(aim_, r.uvs);
     clock_.book(&Phase::solve);
@@ -111,28 +94,6 @@ void Descent::turn_flips(ParamResult& r) {
   const std::size_t most = std::max(kMostFlips, mesh_.triangles.size() / kMostFlipsShare);
   if (flips > 0 && (flips <= most || options_.max_stretch > kTightBound))
     r.unflipped += static_cast<int>(solver_.remove_flips(r.uvs).turned);
-}
-
-// Not if flips were removed, since the rotations are those of the folded state.
-bool Descent::may_unroll(const ParamResult& r, const Distortion& now) const {
-  return from_ != FirstUvs::resumed && r.unflipped == 0 && now.stretch_l2 < kUnrolls &&
-         now.stretch_999 > kUnrolled && now.stretch_999 <= aim_;
-}
-
-// Takes more steps with what may unroll, as long as they change much: the last one changed by
-// `fall`.
-Distortion Descent::unroll(double fall, Distortion now, std::span<Vec2d> uvs) {
-  for (int round = 0; round < kUnrollingRounds; ++round) {
-    if (fall <= kUnrollingFall * (now.stretch_l2 - 1)) break;
-    fall = solver_.iterate(std::max(options_.iterations, 1), uvs);
-    now = measure_distortion(mesh_, uvs);
-  }
-  return now;
-}
-
-bool Descent::worth_relaxing(const Distortion& now) const {
-  const bool poor = now.stretch_999 > kPoorJoint * options_.max_stretch;
-  return now.flips == 0 && !(from_ == FirstUvs::joined && poor);
 }
 
 // For rough surfaces. If the stretch is too high in more than a few places, first squeezes the
@@ -170,8 +131,6 @@ void Descent::draw_apart(ParamResult& r) {
   if (r.injective || !r.within_bound || r.distortion.flips > 0) return;
   const bool few = options_.local || from_ == FirstUvs::joined;
   if (few && r.crossings.size() > kMostSeparable) return;
-  ParamResult crossed;
-  if (options_.leave_crossings) crossed = r;
   if (!solver_.separate_borders(r.uvs)) {
     const auto left = solver_.crossings_left();
     r.stubborn_crossings.assign(left.begin(), left.end());
@@ -187,7 +146,6 @@ void Descent::draw_apart(ParamResult& r) {
       solver_.lower_tail(just_within * options_.max_stretch, r.uvs) == Tail::lowered) {
     judge(mesh_, options_, r);
   }
-  if (!r.within_bound && options_.leave_crossings) r = std::move(crossed);
 }
 
 }  // namespace atlas::param

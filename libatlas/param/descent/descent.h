@@ -28,7 +28,7 @@ class PhaseClock {
 };
 
 // Where first uvs come from.
-enum class FirstUvs { solved, resumed, joined };
+enum class FirstUvs { solved, joined };
 
 // Removes flips, lowers the stretch, moves crossing borders apart and mends what is ruined.
 class Descent {
@@ -36,16 +36,12 @@ class Descent {
   Descent(const LocalMesh& mesh, const FlattenOptions& options, ArapSolver& solver,
           PhaseClock& clock);
 
-  // Continues from r.uvs and fills in the rest of r. `fall` is what the last ArapSolver::iterate()
-  // returned; infinite if there was none.
-  void run(FirstUvs from, double fall, ParamResult& r);
+  // Continues from r.uvs and fills in the rest of r.
+  void run(FirstUvs from, ParamResult& r);
 
  private:
-  std::optional<Distortion> lower_stretch(double fall, ParamResult& r);
+  std::optional<Distortion> lower_stretch(ParamResult& r);
   void turn_flips(ParamResult& r);
-  bool may_unroll(const ParamResult& r, const Distortion& now) const;
-  Distortion unroll(double fall, Distortion now, std::span<Vec2d> uvs);
-  bool worth_relaxing(const Distortion& now) const;
   void lower_tail(ParamResult& r);
   bool worth_squeezing(const Distortion& now, std::span<const Vec2d> uvs) const;
   bool entangled(std::span<const Vec2d> uvs) const;

@@ -24,9 +24,6 @@ struct FlattenOptions : ParamOptions {
   // the one that suits best, so that the ratio of the largest to the smallest singular value falls.
   // For comparison with closed forms.
   bool squeeze_ratio = false;
-  // Borders that can be moved apart only beyond max_stretch are left crossing within it, for
-  // callers that can remove triangles there.
-  bool leave_crossings = false;
 };
 
 // As atlas::parameterize(), which is this with the further options left out.
@@ -35,8 +32,8 @@ ParamResult flatten_disc(const LocalMesh& mesh, const FlattenOptions& options,
 
 // Begins with `uvs`, one per vertex, of which nearly all triangles must be positive, and solves
 // nothing: flipped triangles are relaxed where they are. Beyond the bound the whole is squeezed,
-// or, with FlattenOptions::local, only the places beyond it are relaxed. For a flattening that
-// failed, after a cut, or for a chart that grew. `method`, `axis` and `start` have no effect.
+// or, with FlattenOptions::local, only the places beyond it are relaxed. For a part of a chart, or
+// one that grew. `method`, `axis` and `start` have no effect.
 ParamResult resume_flattening(const LocalMesh& mesh, std::span<const Vec2d> uvs,
                               const FlattenOptions& options, ParamWorkspace& workspace);
 
