@@ -316,23 +316,4 @@ bool Darts::cut_to_border(const Topology& topology, const LocalChart& chart,
   return any;
 }
 
-std::vector<std::uint32_t> way_to_tip(const Topology& topology, const LocalChart& chart,
-                                      std::span<const std::uint32_t> triangles) {
-  EdgePaths paths(topology, chart);
-  paths.spread_from_border();
-  std::uint32_t sharpest = kNoIndex;
-  double most = 0;
-  for (const std::uint32_t t : triangles) {
-    for (const std::uint32_t v : chart.corners[t]) {
-      if (paths.on_border(v)) continue;
-      const double defect = kSameDefect * std::round(paths.defect(v) / kSameDefect);
-      if (defect > most || (defect == most && defect > 0 && v < sharpest)) {
-        most = defect;
-        sharpest = v;
-      }
-    }
-  }
-  return sharpest == kNoIndex ? std::vector<std::uint32_t>{} : paths.way_out(sharpest);
-}
-
 }  // namespace atlas

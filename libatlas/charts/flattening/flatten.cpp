@@ -7,7 +7,6 @@
 
 #include "libatlas/charts/flattening/absorb.h"
 #include "libatlas/charts/flattening/chart_job.h"
-#include "libatlas/charts/flattening/relieve.h"
 #include "libatlas/charts/seams/straighten.h"
 #include "libatlas/core/clock.h"
 #include "libatlas/core/parallel.h"
@@ -92,7 +91,6 @@ class Flattener {
     Stopwatch watch(own_cpu_seconds);
     const auto scratch = pool_.take();
     absorb_charts({input_, partition_, *scratch}, result.charts, context);
-    relieve_charts(input_, partition_, result.charts, context);
     result.timing.absorb_cpu = watch.lap();
     sort_total(result.charts.begin(), result.charts.end(),
                [](const FlatChart& a, const FlatChart& b) {

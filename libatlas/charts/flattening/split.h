@@ -48,12 +48,6 @@ struct Darts {
                      std::span<const BorderCrossing> crossings, Partition& partition);
 };
 
-// Returns the way to cut a disc open from its border to the sharpest tip in the triangles (local
-// ids), as half-edges of the chart beginning at the tip; empty if there is none. Tips are vertices
-// with less than the full angle around them; cuts to other vertices let a chart overlap itself.
-std::vector<std::uint32_t> way_to_tip(const Topology& topology, const LocalChart& chart,
-                                      std::span<const std::uint32_t> triangles);
-
 // Closes cuts inside a chart whose banks lie on each other in `uvs`, since they are no longer
 // needed. Returns false if there are none.
 bool close_flat_slits(const Topology& topology, const LocalChart& chart, std::span<const Vec2d> uvs,
