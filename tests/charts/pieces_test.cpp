@@ -4,6 +4,7 @@
 #include <atomic>
 #include <numeric>
 #include <random>
+#include <set>
 #include <string>
 #include <string_view>
 
@@ -172,21 +173,23 @@ TEST(Pieces, SplitsAreThoseOfTheAttemptTaken) {
   ASSERT_TRUE(topology.ok());
   ASSERT_EQ(topology->component_count, 1u);
   std::size_t fewest = kNoIndex;
-  std::uint64_t wanted = 0, all = 0;
+  std::set<std::uint64_t> wanted;  // of the attempts with the fewest charts
+  std::uint64_t all = 0;
   for (const double first_seed : {0.0, 0.25, 0.5, 0.75}) {
     Segmentation attempt = segment(*topology, options, first_seed, {});
     const FlattenResult flat =
         flatten_charts({*topology, {}, options, attempt.frames}, attempt.partition, {});
     all += flat.split_charts();
-    if (flat.charts.size() >= fewest) continue;
+    if (flat.charts.size() > fewest) continue;
+    if (flat.charts.size() < fewest) wanted.clear();
     fewest = flat.charts.size();
-    wanted = flat.split_charts();
+    wanted.insert(flat.split_charts());
   }
-  ASSERT_GT(all, wanted) << "other attempts divide charts, too";
+  ASSERT_GT(all, *wanted.rbegin()) << "other attempts divide charts, too";
   Frames none;
   const CutCharts cut = cut_pieces({*topology, {}, options, none}, from_to(0, 1), {});
   EXPECT_EQ(cut.charts.size(), fewest);
-  EXPECT_EQ(cut.split_charts, wanted);
+  EXPECT_TRUE(wanted.contains(cut.split_charts));
 }
 
 }  // namespace
