@@ -26,7 +26,7 @@ struct ParamOptions {
   // Of the projection, of any length; (0, 0, 0), or not finite: the mean normal.
   Vec3d axis = {};
   IsometricStart start = {};    // what the isometric solver starts from
-  int iterations = 3;           // local/global steps before the bound is checked
+  int iterations = 5;           // local/global steps before the bound is checked
   int squeeze_iterations = 12;  // most reweighted steps, if the bound is missed
   // Triangles keep at least this altitude (uv units) where possible, so that they stay positive
   // when the result is rounded for output.

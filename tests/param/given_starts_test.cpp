@@ -78,17 +78,6 @@ TEST(GivenStarts, AProjectionBeyondItsOwnBoundIsNotTaken) {
   EXPECT_LT(unrolled.distortion.stretch_999, 1.001);
 }
 
-// Whoever is content with the bound for small places does not get the whole lowered to an aim.
-TEST(GivenStarts, NothingIsAimedAtWhereTheBoundIsEnough) {
-  const Disc d = testing::make_cap(0.9, 16);
-  param::FlattenOptions options{{.method = ParamMethod::isometric}};
-  options.local = true;
-  const ParamResult plain = run_with(d, options);
-  ASSERT_TRUE(plain.within_bound);
-  options.aimed_stretch = 1.01;
-  EXPECT_EQ(run_with(d, options).uvs, plain.uvs);
-}
-
 TEST(GivenStarts, ResumingMovesOnlyWhatIsAtFault) {
   const Disc d = plate();
   std::vector<Vec2d> start;

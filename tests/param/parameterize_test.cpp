@@ -61,7 +61,7 @@ TEST(Parameterize, LargeMeshesGoOnAfterTheyWereMeasured) {
   const Disc cap = testing::make_cap(1.1, 190);
   param::FlattenOptions options{{.method = ParamMethod::isometric}};
   const double plain = run(cap, options).distortion.stretch_999;
-  options.aimed_stretch = 1.1;  // cannot be reached, but is tried
+  options.max_stretch = 1.1;  // cannot be reached, but is tried
   const ParamResult squeezed = run_with(cap, options);
   EXPECT_TRUE(squeezed.injective);
   EXPECT_LT(squeezed.distortion.stretch_999, plain);

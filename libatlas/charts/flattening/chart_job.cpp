@@ -30,12 +30,6 @@ constexpr int kSmallHole = 16, kLongestSlit = 100;  // edges
 // The altitude that slivers keep, relative to the square root of the chart's area.
 constexpr double kMinAltitude = 1e-7;
 
-// Charts of fewer triangles are squeezed towards kAimedStretch (with the preset `best`, all charts
-// to kBestStretch) even if the bound is wider. That costs them little time, and the solver stops
-// where it would cost much L2 stretch.
-constexpr std::size_t kLargeChart = 20000;
-constexpr double kAimedStretch = 1.18;
-constexpr double kBestStretch = 1.12;
 // Under scan noise, these are the most rounds of cutting and of closing cuts that cross, the most
 // that close, and the further ones that only close. With half as many, or with charts divided for 8
 // crossings whatever their size, time and charts were a tenth and a twentieth more (11 noisy
@@ -48,7 +42,6 @@ constexpr std::size_t kMostCrossingsLeft = 8, kTrianglesACrossing = 150;
 constexpr int kTelling = 2;
 // Rounds of joining boundary loops of a union: of 5900 unions none succeeded after more.
 constexpr int kMostJoints = 2;
-constexpr int kBestIterations = 8;
 // Charts of at least kManyTrianglesToCut that exceed the bound over more than kWideShare of their
 // area were never saved by cuts to vertices (measured). If they have a hole, it may be what they
 // close around.
@@ -93,7 +86,8 @@ class ChartJob {
         build(task_.triangles);
       }
     }
-    outcome.parts = task_.whole ? std::vector<std::uint8_t>(1, 0) : halves();
+    outcome.parts = task_.whole ? std::vector<std::uint8_t>(1, 0)
+                                : halves(input_.topology, chart_, result_.offenders);
     outcome.failed = true;
     return outcome;
   }
@@ -244,28 +238,17 @@ class ChartJob {
     return parts;
   }
 
-  std::vector<std::uint8_t> halves() const {
-    const auto pair = far_pair(input_.topology, chart_);
-    return divide(input_.topology, chart_, pair);
-  }
-
   // In units of the uvs, which the density scales.
   double min_altitude() const {
     return kMinAltitude * std::sqrt(chart_.target_area(input_.topology));
   }
 
-  param::FlattenOptions flatten_options(std::size_t triangles) const {
+  param::FlattenOptions flatten_options() const {
     const ChartOptions& options = input_.options;
     param::FlattenOptions param;
     param.max_stretch = options.max_stretch;
-    const bool best = options.preset == ChartPreset::best;
-    const double aim = best ? kBestStretch : kAimedStretch;
-    if (best || (options.preset == ChartPreset::standard && triangles < kLargeChart)) {
-      param.aimed_stretch = std::min(options.max_stretch, aim);
-    }
     param.local = noisy() || task_.little;
     param.rough = noisy();
-    if (best) param.iterations = kBestIterations;
     param.max_planar_stretch =
         std::min(options.max_stretch,
                  options.preset == ChartPreset::fast ? kFastPlanarStretch : kPlanarStretch);
@@ -276,7 +259,7 @@ class ChartJob {
 
   ParamResult solve(const LocalMesh& mesh) {
     ParamWorkspace& workspace = scratch_.workspace;
-    param::FlattenOptions options = flatten_options(mesh.triangles.size());
+    param::FlattenOptions options = flatten_options();
     if (!task_.joined.empty())
       return param::join_flat_parts(mesh, {task_.joined, task_.little}, options, workspace);
     if (!input_.frames.empty())

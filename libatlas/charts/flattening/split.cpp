@@ -1,7 +1,6 @@
 #include "libatlas/charts/flattening/split.h"
 
 #include <algorithm>
-#include <array>
 #include <functional>
 #include <limits>
 #include <numeric>
@@ -20,10 +19,9 @@ constexpr double kUnreached = std::numeric_limits<double>::max();
 
 struct Visit {
   double distance;
-  std::uint32_t node, source;
+  std::uint32_t node;
   bool operator>(const Visit& other) const {
-    if (distance != other.distance) return distance > other.distance;
-    return node != other.node ? node > other.node : source > other.source;
+    return distance != other.distance ? distance > other.distance : node > other.node;
   }
 };
 
@@ -39,52 +37,31 @@ double fold(const Topology& topology, const LocalChart& chart, std::uint32_t s, 
                       to_dvec(topology.normals[chart.triangles()[t]]));
 }
 
-// Grows regions over the triangles by Dijkstra's algorithm.
-class GrownRegions {
- public:
-  GrownRegions(const Topology& topology, const LocalChart& chart,
-               std::span<const std::uint32_t> seeds)
-      : topology_(topology),
-        chart_(chart),
-        distance_(chart.corners.size(), kUnreached),
-        owner_(chart.corners.size(), 0) {
-    // No seed may take another one.
-    for (const std::uint32_t seed : seeds) distance_[seed] = 0;
-    for (std::uint32_t s = 0; s < seeds.size(); ++s) take({0, seeds[s], s});
-    while (!heap_.empty()) {
-      const Visit visit = heap_.top();
-      heap_.pop();
-      if (visit.distance < distance_[visit.node]) take(visit);
+// Returns the distance of each triangle along the surface, longer across folds (Dijkstra's
+// algorithm).
+std::vector<double> distances_from(const Topology& topology, const LocalChart& chart,
+                                   std::uint32_t start) {
+  std::vector<double> distance(chart.corners.size(), kUnreached);
+  std::priority_queue<Visit, std::vector<Visit>, std::greater<>> heap;
+  distance[start] = 0;
+  heap.push({0, start});
+  while (!heap.empty()) {
+    const auto [so_far, t] = heap.top();
+    heap.pop();
+    if (so_far > distance[t]) continue;
+    const glm::dvec3 from = centroid(chart, t);
+    for (std::uint32_t h = 3 * t; h < 3 * t + 3; ++h) {
+      if (chart.opposite[h] == kNoIndex) continue;
+      const std::uint32_t next = chart.opposite[h] / 3;
+      const double step = glm::distance(from, centroid(chart, next)) *
+                          (1 + kNormalWeight * fold(topology, chart, t, next));
+      if (so_far + step >= distance[next]) continue;
+      distance[next] = so_far + step;
+      heap.push({so_far + step, next});
     }
   }
-
-  const std::vector<double>& distance() const { return distance_; }
-  // One per triangle: the number of the seed that is nearest.
-  std::vector<std::uint8_t> take_owners() { return std::move(owner_); }
-
- private:
-  void take(const Visit& visit) {
-    distance_[visit.node] = visit.distance;
-    owner_[visit.node] = static_cast<std::uint8_t>(visit.source);
-    const glm::dvec3 from = centroid(chart_, visit.node);
-    for (std::uint32_t h = 3 * visit.node; h < 3 * visit.node + 3; ++h) {
-      if (chart_.opposite[h] == kNoIndex) continue;
-      const std::uint32_t next = chart_.opposite[h] / 3;
-      if (distance_[next] <= visit.distance) continue;
-      const double step = glm::distance(from, centroid(chart_, next)) *
-                          (1 + kNormalWeight * fold(topology_, chart_, visit.node, next));
-      if (visit.distance + step < distance_[next]) {
-        heap_.push({visit.distance + step, next, visit.source});
-      }
-    }
-  }
-
-  const Topology& topology_;
-  const LocalChart& chart_;
-  std::vector<double> distance_;
-  std::vector<std::uint8_t> owner_;
-  std::priority_queue<Visit, std::vector<Visit>, std::greater<>> heap_;
-};
+  return distance;
+}
 
 // Gives each polygon to the part that has most of its area. If a single part would be left, one
 // polygon goes to another part; a chart of one polygon stays divided by triangles.
@@ -125,33 +102,36 @@ void keep_polygons_whole(const Topology& topology, const LocalChart& chart,
   parts = std::move(whole);
 }
 
-std::uint32_t farthest_from(const Topology& topology, const LocalChart& chart,
-                            std::uint32_t start) {
-  const GrownRegions region(topology, chart, {&start, 1});
-  const std::vector<double>& distance = region.distance();
-  std::uint32_t farthest = start;
+// Returns the triangle with the largest distance. Where all lie in one point, any but `start` will
+// do.
+std::uint32_t farthest(std::span<const double> distance, std::uint32_t start) {
+  std::uint32_t far = start == 0 && distance.size() > 1 ? 1 : 0;
   for (std::uint32_t t = 0; t < distance.size(); ++t) {
-    if (distance[t] < kUnreached && distance[t] > distance[farthest]) farthest = t;
+    if (distance[t] < kUnreached && distance[t] > distance[far]) far = t;
   }
-  // All triangles lie in one point: any other one will do.
-  if (farthest == start) {
-    for (std::uint32_t t = 0; t < distance.size(); ++t) {
-      if (t != start && distance[t] < kUnreached) return t;
-    }
-  }
-  return farthest;
+  return far;
 }
 
 }  // namespace
 
-std::array<std::uint32_t, 2> far_pair(const Topology& topology, const LocalChart& chart) {
-  const std::uint32_t a = farthest_from(topology, chart, 0);
-  return {a, farthest_from(topology, chart, a)};
-}
-
-std::vector<std::uint8_t> divide(const Topology& topology, const LocalChart& chart,
-                                 std::span<const std::uint32_t> seeds) {
-  std::vector<std::uint8_t> parts = GrownRegions(topology, chart, seeds).take_owners();
+std::vector<std::uint8_t> halves(const Topology& topology, const LocalChart& chart,
+                                 std::span<const std::uint32_t> offenders) {
+  const std::uint32_t a = farthest(distances_from(topology, chart, 0), 0);
+  const std::vector<double> from_a = distances_from(topology, chart, a);
+  const std::uint32_t b = farthest(from_a, a);
+  const std::vector<double> from_b = distances_from(topology, chart, b);
+  double sum = 0, area = 0;
+  for (const std::uint32_t t : offenders) {
+    const double own = topology.areas[chart.triangles()[t]];
+    sum += own * (from_a[t] - from_b[t]);
+    area += own;
+  }
+  // All triangles on a shortest way to a, or b, are on its side, so both sides are connected.
+  const double middle = area > 0 ? sum / area : 0;
+  std::vector<std::uint8_t> parts(from_a.size());
+  for (std::size_t t = 0; t < parts.size(); ++t) parts[t] = from_a[t] - from_b[t] > middle;
+  parts[a] = 0;
+  parts[b] = 1;
   if (!topology.polygon.empty()) keep_polygons_whole(topology, chart, parts);
   return parts;
 }

@@ -1,7 +1,6 @@
 // Internal: ways to make a chart flatten: cutting it open, or dividing it.
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <span>
 #include <unordered_set>
@@ -13,15 +12,13 @@
 
 namespace atlas {
 
-// Returns two local triangles far from each other, or {0, 0} for a single triangle.
-std::array<std::uint32_t, 2> far_pair(const Topology& topology, const LocalChart& chart);
-
-// Divides a connected chart by growing regions from the given local triangles, at least two
-// different ones, at equal speed (slower across creases). Returns one label per triangle; the
-// triangles of each label are connected. Polygons stay whole, and labels may then fall apart,
-// unless the chart is a single polygon.
-std::vector<std::uint8_t> divide(const Topology& topology, const LocalChart& chart,
-                                 std::span<const std::uint32_t> seeds);
+// Divides a connected chart of at least two triangles between two of them that are far from each
+// other (across folds, more so), through the middle of the offending triangles (local ids; none:
+// halfway): otherwise these come to lie in one part, which fails in its turn. Returns 0 or 1 per
+// triangle; both parts are connected. Polygons stay whole, and parts may then fall apart, unless
+// the chart is a single polygon.
+std::vector<std::uint8_t> halves(const Topology& topology, const LocalChart& chart,
+                                 std::span<const std::uint32_t> offenders);
 
 // Joins boundary loops of a connected chart to its first loop and those joined to that, nearest
 // first, by shortest paths along edges (creases count less). The half-edges of the paths become

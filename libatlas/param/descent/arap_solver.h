@@ -38,14 +38,13 @@ class ArapSolver {
   // their stretch and the system is solved again (iteratively reweighted least squares towards the
   // maximum norm; Burrus, Barreto and Selesnick 1994, "Iterative reweighted least-squares design of
   // FIR filters"). No weight falls below a share of the largest; otherwise faces that hardly
-  // stretch would give way without limit for the sake of a few others. Ends when that stretch is at
-  // most `goal`, after `iterations`, or when at this rate it will not come within `bound` or, once
-  // within, will not reach the goal soon. uvs become the state with the least stretch. If that
-  // costs much L2 stretch, they become the first state within the bound instead, moved back as far
-  // as the bound allows. With `ratio`, stretch is measured at the scale in the middle of its range
-  // instead of the area-preserving one.
+  // stretch would give way without limit for the sake of a few others. Ends when that stretch is
+  // within `bound`, after `iterations`, or when at this rate it will not come there. uvs become the
+  // state with the least stretch; within the bound, moved back as far as the bound allows and as it
+  // lowers the L2 stretch. With `ratio`, stretch is measured at the scale in the middle of its
+  // range instead of the area-preserving one.
   struct Squeeze {
-    double goal, bound;
+    double bound;
     int iterations;
     bool ratio;
     bool rough;  // FlattenOptions::rough
@@ -102,7 +101,7 @@ class ArapSolver {
   double update_stretch(std::span<const Vec2d> uvs, bool ratio);
   double stretch_energy();
   void weight_by_stretch(double largest, double least);
-  void ease(double log_bound, bool ratio, std::span<Vec2d> uvs);
+  void ease(double bound, bool ratio, std::span<Vec2d> uvs);
 
   const LocalMesh& mesh_;
   IsometricOptions options_;

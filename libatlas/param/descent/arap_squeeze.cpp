@@ -31,19 +31,11 @@ constexpr std::array steps{1.7, 1.3};
 // them, where a hundredth is enough. With it and the following limits L2 - 1 is 14 % less, with a
 // hundredth fewer charts (347 meshes).
 constexpr double least_weight = 0.4, less_each_time = 0.75;
-// Within the bound the least weight is at most least_within. If the bound or the goal is not near,
-// it is lowered down to last_weight: a triangle of that weight still keeps its shape where that
-// costs nothing.
-constexpr double least_within = 0.1, less_when_slow = 0.3, last_weight = 0.02;
-// Stretch within the bound is not lowered to the goal if that takes this many times the initial
-// energy. On curved surfaces it takes hardly more, on flat faces with a sharp vertex ten times as
-// much.
-constexpr double dear = 1.7;
+// If the bound is not near, it is lowered down to last_weight: a triangle of that weight still
+// keeps its shape where that costs nothing.
+constexpr double less_when_slow = 0.3, last_weight = 0.02;
 constexpr int easing_steps = 3;
 constexpr double rounding = 1e-4;  // margin kept to the bound when moving back, as rise()
-
-// Once within the bound, the goal is near if this many iterations may reach it.
-constexpr int soon = 2;
 
 // The decrease of stretch in an iteration is a share of that in the one before, which is estimated
 // from two iterations. In charts of at least many_triangles, whose iterations take long, this ended
@@ -52,12 +44,12 @@ constexpr int soon = 2;
 constexpr std::size_t many_triangles = 2000;
 constexpr double least_share = 0.6, most_share = 0.9;
 
-// Whether a value that fell from `two_ago` to `one_ago` and `now` will end above the goal.
-bool ends_above(double goal, double two_ago, double one_ago, double now) {
+// Whether a value that fell from `two_ago` to `one_ago` and `now` will end above the bound.
+bool ends_above(double bound, double two_ago, double one_ago, double now) {
   const double before = two_ago - one_ago, last = one_ago - now;
   const double share = before > 0 ? std::clamp(last / before, least_share, most_share) : most_share;
   const double next = share * (last > 0 ? last : 0.5 * before);
-  return now - next / (1 - share) > goal;
+  return now - next / (1 - share) > bound;
 }
 
 }  // namespace
@@ -117,20 +109,17 @@ void ArapSolver::weight_by_stretch(double largest, double least) {
 
 void ArapSolver::squeeze(const Squeeze& options, std::span<Vec2d> uvs) {
   wake(uvs);
-  const double goal = rise(options.goal), bound = rise(options.bound);
+  const double bound = rise(options.bound);
   const bool foresees = mesh_.triangles.size() >= many_triangles && !options.ratio;
   const bool chooses = !options.rough && uvs.size() < large_mesh;  // there is memory for more
                                                                    // states
   double now = update_stretch(uvs, options.ratio), best = now, one_ago = now;
-  const double energy_before = chooses ? stretch_energy() : std::numeric_limits<double>::infinity();
-  double best_energy = energy_before, least = options.rough ? 0 : least_weight;
+  double least = options.rough ? 0 : least_weight;
   w_.best.assign(uvs.begin(), uvs.end());
-  if (chooses) w_.unsqueezed = w_.first_within = w_.best;
+  if (chooses) w_.unsqueezed = w_.best;
   w_.rotations.resize(w_.elements.size());
-  const auto too_dear = [&] { return best <= bound && best_energy > dear * energy_before; };
-  for (int i = 0; i < options.iterations && best > goal && !too_dear(); ++i) {
+  for (int i = 0; i < options.iterations && best > bound; ++i) {
     if (i > 0) least *= less_each_time;
-    if (best <= bound) least = std::min(least, least_within);
     weight_by_stretch(now, least);
     factorize();
     for (const double times : steps) {
@@ -141,33 +130,29 @@ void ArapSolver::squeeze(const Squeeze& options, std::span<Vec2d> uvs) {
     const double two_ago = std::exchange(one_ago, best);
     if (now < best) {
       w_.best.assign(uvs.begin(), uvs.end());
-      if (chooses && best > bound) w_.first_within = w_.best;
-      if (chooses) best_energy = stretch_energy();
       best = now;
     }
     // Steps get shorter, though not each one. If the remaining steps, extrapolated from the last
     // two, do not suffice, none will with these least weights.
-    const bool within = best <= bound;
-    const int rest = std::min(options.iterations - 1 - i, within ? soon : options.iterations);
     const double gain = 0.5 * (two_ago - best);
-    const bool slow = (i >= 2 && best - gain * rest > (within ? goal : bound)) ||
-                      (i >= 1 && !within && foresees && ends_above(bound, two_ago, one_ago, best));
+    const bool slow = (i >= 2 && best - gain * (options.iterations - 1 - i) > bound) ||
+                      (i >= 1 && foresees && ends_above(bound, two_ago, one_ago, best));
     if (slow && least < last_weight) break;
     if (slow) least *= less_when_slow;
   }
-  if (too_dear()) {
+  if (chooses && best <= bound) {
     ease(bound - rounding, options.ratio, uvs);
   } else {
     std::copy(w_.best.begin(), w_.best.end(), uvs.begin());
   }
 }
 
-// Makes uvs the one with the least L2 stretch, within the bound, of w_.first_within and some blends
-// of it with w_.unsqueezed.
+// Makes uvs the one with the least L2 stretch, within the bound, of w_.best and some blends of it
+// with w_.unsqueezed.
 void ArapSolver::ease(double bound, bool ratio, std::span<Vec2d> uvs) {
   const auto blend = [&](double share) {
     for (std::size_t v = 0; v < uvs.size(); ++v) {
-      const glm::dvec2 from = to_glm(w_.unsqueezed[v]), to = to_glm(w_.first_within[v]);
+      const glm::dvec2 from = to_glm(w_.unsqueezed[v]), to = to_glm(w_.best[v]);
       uvs[v] = from_glm(from + share * (to - from));
     }
   };

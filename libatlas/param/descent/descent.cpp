@@ -57,8 +57,6 @@ Descent::Descent(const LocalMesh& mesh, const FlattenOptions& options, ArapSolve
 
 void Descent::run(FirstUvs from, ParamResult& r) {
   from_ = from;
-  aim_ =
-      options_.aimed_stretch > 0 && !options_.local ? options_.aimed_stretch : options_.max_stretch;
   clock_.book(&Phase::solve);
   const std::optional<Distortion> last = lower_stretch(r);
   clock_.book(&Phase::solve);
@@ -69,19 +67,19 @@ void Descent::run(FirstUvs from, ParamResult& r) {
   clock_.book(&Phase::overlaps);
 }
 
-// Lowers the stretch to the aim, as far as that is worth it. Returns the distortion of r.uvs if it
-// is at the aim.
+// Lowers the stretch to the bound, where that may succeed. Returns the distortion of r.uvs if it
+// was there.
 std::optional<Distortion> Descent::lower_stretch(ParamResult& r) {
   turn_flips(r);
   clock_.book(&Phase::flips);
   if (options_.squeeze_iterations <= 0) return {};
   Distortion now = measure_distortion(mesh_, r.uvs);
   if (now.flips > 0 && options_.max_stretch <= kTightBound) return {};
-  if (now.stretch_999 <= aim_) return now;
+  if (now.stretch_999 <= options_.max_stretch) return now;
   if (options_.local) {
     lower_tail(r);
   } else if (worth_squeezing(now, r.uvs)) {
-    squeeze(aim_, r.uvs);
+    squeeze(options_.max_stretch, r.uvs);
     clock_.book(&Phase::solve);
     turn_flips(r);  // squeezing may have flipped triangles again
     clock_.book(&Phase::flips);
@@ -101,8 +99,7 @@ void Descent::turn_flips(ParamResult& r) {
 void Descent::lower_tail(ParamResult& r) {
   const double bound = just_within * options_.max_stretch;
   if (solver_.lower_tail(bound, r.uvs) != Tail::wide) return;
-  solver_.squeeze(
-      {bound, bound, options_.squeeze_iterations, options_.squeeze_ratio, options_.rough}, r.uvs);
+  squeeze(bound, r.uvs);
   turn_flips(r);
   if (count_flips(mesh_, r.uvs) == 0) solver_.lower_tail(bound, r.uvs);
 }
@@ -119,9 +116,8 @@ bool Descent::entangled(std::span<const Vec2d> uvs) const {
   return check_injectivity(mesh_, uvs, {.max_crossings = most + 1}).crossings.size() > most;
 }
 
-void Descent::squeeze(double goal, std::span<Vec2d> uvs) {
-  solver_.squeeze({goal, options_.max_stretch, options_.squeeze_iterations, options_.squeeze_ratio,
-                   options_.rough},
+void Descent::squeeze(double bound, std::span<Vec2d> uvs) {
+  solver_.squeeze({bound, options_.squeeze_iterations, options_.squeeze_ratio, options_.rough},
                   uvs);
 }
 

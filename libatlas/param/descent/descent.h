@@ -45,7 +45,7 @@ class Descent {
   void lower_tail(ParamResult& r);
   bool worth_squeezing(const Distortion& now, std::span<const Vec2d> uvs) const;
   bool entangled(std::span<const Vec2d> uvs) const;
-  void squeeze(double goal, std::span<Vec2d> uvs);
+  void squeeze(double bound, std::span<Vec2d> uvs);
   void draw_apart(ParamResult& r);
 
   const LocalMesh& mesh_;
@@ -53,7 +53,6 @@ class Descent {
   ArapSolver& solver_;
   PhaseClock& clock_;
   FirstUvs from_ = FirstUvs::solved;
-  double aim_ = 1;  // of the stretch
 };
 
 }  // namespace atlas::param

@@ -12,10 +12,7 @@ struct FlattenOptions : ParamOptions {
   // The projection is used if its own stretch_999 and stretch_l2 are at most this; <= max_stretch.
   // 0: max_stretch.
   double max_planar_stretch = 0;
-  // The aim of squeezing, <= max_stretch; 0: max_stretch. Not reached if that costs much L2
-  // stretch.
-  double aimed_stretch = 0;
-  // Being within max_stretch is enough, and only the small places beyond it are relaxed. The whole
+  // Only the small places beyond the bound are relaxed. The whole
   // is squeezed only if there are many of them. For rough surfaces.
   bool local = false;
   // No face is flat: when the whole is squeezed, each triangle may give way as far as it helps.

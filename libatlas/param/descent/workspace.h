@@ -27,7 +27,7 @@ struct ParamWorkspace::Impl {
   std::vector<param::WeightedValue> tail;
   std::vector<param::SingularValues> sigma;
   std::vector<Vec2d> before, best;
-  std::vector<Vec2d> unsqueezed, first_within;  // while squeezing
+  std::vector<Vec2d> unsqueezed;  // while squeezing
   param::Relaxer relaxer;
   param::Separator separator;
 };
