@@ -186,8 +186,8 @@ TEST(FillPages, GivenChartsStayWhole) {
 // The page is less than 0.7 full, but no cut would let it hold enough more.
 TEST(FillPages, SeamsMustBeWorthIt) {
   const UnwrapOptions square{{.page_size = 512, .square = true}};
-  const UnwrappedMesh whole = unwrap(torus(48, 24), square, 0),
-                      offered = unwrap(torus(48, 24), square);
+  const UnwrappedMesh whole = unwrap(torus(64, 32), square, 0),
+                      offered = unwrap(torus(64, 32), square);
   EXPECT_LT(whole.utilization, 0.7);
   EXPECT_EQ(offered.charts.charts.size(), whole.charts.charts.size());
   EXPECT_DOUBLE_EQ(offered.charts.seam_length, whole.charts.seam_length);

@@ -202,7 +202,7 @@ def test_an_atlas_can_be_unwrapped_again_and_grow():
     first = atlas.unwrap(page_size=256)
     seams = first[0].seams
     second = atlas.unwrap(page_size=512)
-    assert first.pages[0].max() == 256 and second.pages[0].max() == 512
+    assert 240 <= first.pages[0].max() <= 256 and 480 <= second.pages[0].max() <= 512
     atlas.add(*torus())
     assert len(atlas.unwrap()) == 2
     assert seams.any()

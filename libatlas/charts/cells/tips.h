@@ -10,6 +10,11 @@
 
 namespace atlas {
 
+// The angle defect, in radians, from which on curvature at a vertex counts as concentrated there:
+// charts that surround it flatten badly unless they are cut open up to it. Spikes of scan noise
+// have more; a cone whose normals lean by 20 degrees has this one.
+inline constexpr double kSharpDefect = 0.4;
+
 // Returns by how much the angles around the vertex where h starts fall short of a full turn
 // (negative: exceed it), in radians in [-pi, pi], modulo whole turns. Returns 0 at the mesh's
 // boundary.

@@ -6,6 +6,7 @@
 #include <queue>
 #include <unordered_set>
 
+#include "libatlas/charts/cells/tips.h"
 #include "libatlas/charts/flattening/split.h"
 #include "libatlas/core/glm_bridge.h"
 #include "libatlas/core/portable_math.h"
@@ -29,9 +30,7 @@ constexpr std::size_t kLongestDart = 12;
 // Edges that were cut in vain count this many times their length.
 constexpr double kDetour = 4;
 constexpr double kPolygonDetour = 1e4;  // so many times if they lie inside a polygon
-// Spikes of scan noise have larger defects: a cone whose normals lean by 20 degrees has this one.
-constexpr double kSharpDefect = 0.4;
-constexpr double kFreeShare = 0.001;  // share of the area that the bound does not apply to
+constexpr double kFreeShare = 0.001;    // share of the area that the bound does not apply to
 constexpr double kFar = std::numeric_limits<double>::max();
 
 std::uint32_t whole_half_edge(const LocalChart& chart, std::uint32_t h) {

@@ -15,6 +15,8 @@ namespace {
 
 // Weight of the fold at an edge in the distance across it.
 constexpr double kNormalWeight = 8;
+// Where a shape is symmetric, rounding does not choose between distances that are the same.
+constexpr double kMore = 1 + 1e-6;
 constexpr double kUnreached = std::numeric_limits<double>::max();
 
 struct Visit {
@@ -107,7 +109,7 @@ void keep_polygons_whole(const Topology& topology, const LocalChart& chart,
 std::uint32_t farthest(std::span<const double> distance, std::uint32_t start) {
   std::uint32_t far = start == 0 && distance.size() > 1 ? 1 : 0;
   for (std::uint32_t t = 0; t < distance.size(); ++t) {
-    if (distance[t] < kUnreached && distance[t] > distance[far]) far = t;
+    if (distance[t] < kUnreached && distance[t] > kMore * distance[far]) far = t;
   }
   return far;
 }
@@ -128,8 +130,9 @@ std::vector<std::uint8_t> halves(const Topology& topology, const LocalChart& cha
   }
   // All triangles on a shortest way to a, or b, are on its side, so both sides are connected.
   const double middle = area > 0 ? sum / area : 0;
+  const double least = (kMore - 1) * from_a[b];
   std::vector<std::uint8_t> parts(from_a.size());
-  for (std::size_t t = 0; t < parts.size(); ++t) parts[t] = from_a[t] - from_b[t] > middle;
+  for (std::size_t t = 0; t < parts.size(); ++t) parts[t] = from_a[t] - from_b[t] - middle > least;
   parts[a] = 0;
   parts[b] = 1;
   if (!topology.polygon.empty()) keep_polygons_whole(topology, chart, parts);

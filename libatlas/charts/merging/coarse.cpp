@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <span>
+#include <unordered_set>
 #include <utility>
 
 #include "libatlas/charts/cells/rims.h"
@@ -224,12 +225,15 @@ class CoarseBuilder {
   std::vector<std::uint32_t> arc_at_;  // by the half-edge that begins side 0
 };
 
-void mark_tips(const Topology& topology, const std::vector<std::uint32_t>& tips, CoarseMesh& mesh) {
-  if (tips.empty()) return;
-  const auto from = [&](std::uint32_t h) { return topology.corner_vertex[h]; };
-  std::vector<std::uint8_t> tip(topology.points.size(), 0);
-  for (const std::uint32_t h : tips) tip[from(h)] = 1;
-  for (const std::uint32_t h : mesh.slot_half_edge) mesh.slot_tip.push_back(tip[from(h)]);
+void mark_sharp(const Topology& topology, const std::vector<std::uint32_t>& tips,
+                CoarseMesh& mesh) {
+  const bool noisy = !topology.calm_normals.empty();
+  std::unordered_set<std::uint32_t> tip;
+  for (const std::uint32_t h : tips) tip.insert(topology.corner_vertex[h]);
+  for (const std::uint32_t h : mesh.slot_half_edge) {
+    mesh.slot_sharp.push_back(tip.contains(topology.corner_vertex[h]) ||
+                              (!noisy && std::abs(angle_defect(topology, h)) >= kSharpDefect));
+  }
 }
 
 }  // namespace
@@ -239,8 +243,8 @@ CoarseMesh build_coarse(const Topology& topology, double crease_degrees, Cells& 
   divide_at_tips(topology, tips, cells);
   Rims rims = divide_rings(topology, cells);
   CoarseMesh mesh = CoarseBuilder(topology, crease_degrees, cells, std::move(rims)).run();
-  mark_tips(topology, tips, mesh);
-  unroll_cells(topology, cells, mesh);
+  mark_sharp(topology, tips, mesh);
+  unroll_cells(topology, cells, tips, mesh);
   return mesh;
 }
 

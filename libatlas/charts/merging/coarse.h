@@ -39,7 +39,8 @@ struct CoarseMesh {
   std::vector<std::uint32_t> slot_arc;  // the arc that starts at the slot
   // The first half-edge of that arc on the cell's side, in the topology.
   std::vector<std::uint32_t> slot_half_edge;
-  std::vector<std::uint8_t> slot_tip;  // one per slot: it lies on a tip (tips.h); empty: no tips
+  // One per slot: it lies on a tip (tips.h) or, unless the mesh is noisy, has kSharpDefect.
+  std::vector<std::uint8_t> slot_sharp;
   // One per slot: its place when its cell is laid flat, if that unrolls. Empty: no cell unrolls.
   std::vector<Vec2d> flat_slot;
   std::vector<CoarseArc> arcs;

@@ -224,14 +224,15 @@ class Merger {
     }
     const TrialOutcome outcome = attempt(a, b);
     return outcome.accepted ||
-           ((outcome.euler < 1 || glue_has_tip()) &&
+           ((outcome.euler < 1 || glue_is_sharp()) &&
             keep_longest_run(mesh_, seam_ends(a, b), glue_) && attempt(a, b).accepted);
   }
 
-  bool is_tip(std::uint32_t slot) const { return !mesh_.slot_tip.empty() && mesh_.slot_tip[slot]; }
-  bool glue_has_tip() const {
+  // Whether curvature is concentrated at an end of an arc that is glued.
+  bool glue_is_sharp() const {
     return std::any_of(glue_.begin(), glue_.end(), [&](std::uint32_t arc) {
-      return is_tip(mesh_.arcs[arc].slot[0]) || is_tip(mesh_.arcs[arc].slot[1]);
+      const auto& slot = mesh_.arcs[arc].slot;
+      return mesh_.slot_sharp[slot[0]] || mesh_.slot_sharp[slot[1]];
     });
   }
 
@@ -300,14 +301,14 @@ class Merger {
     return false;
   }
 
-  // Returns where seams of either chart with itself end, and the tips.
+  // Returns where seams of either chart with itself end, and sharp points.
   std::vector<Vec3d> seam_ends(std::uint32_t a, std::uint32_t b) const {
     std::vector<Vec3d> ends;
     for (const std::uint32_t name : {a, b}) {
       for (const std::uint32_t arc : chart(name).arcs) {
         const bool seam = chart_at(arc, 0) == chart_at(arc, 1);
         for (const std::uint32_t slot : mesh_.arcs[arc].slot) {
-          if (slot != kNoIndex && (seam || is_tip(slot))) {
+          if (slot != kNoIndex && (seam || mesh_.slot_sharp[slot])) {
             ends.push_back(mesh_.slot_position[slot]);
           }
         }

@@ -34,11 +34,10 @@ struct Flat {
 
 class Unroller {
  public:
-  Unroller(const Topology& topology, const Cells& cells, CoarseMesh& mesh)
+  Unroller(const Topology& topology, const Cells& cells, std::span<const std::uint32_t> tips,
+           CoarseMesh& mesh)
       : topology_(topology), cells_(cells), mesh_(mesh), curved_(topology.component_count, 0) {
-    for (std::size_t s = 0; s < mesh.slot_tip.size(); ++s) {
-      if (mesh.slot_tip[s]) tips_.insert(topology.corner_vertex[mesh.slot_half_edge[s]]);
-    }
+    for (const std::uint32_t h : tips) tips_.insert(topology.corner_vertex[h]);
   }
 
   // Lays out bent cells first; cells in one plane only where they touch cells that unroll. Each
@@ -256,8 +255,9 @@ bool unroll_chart(const LocalChart& chart, double min_altitude, std::vector<Vec2
   return ChartUnroller(chart, min_altitude, uvs).run();
 }
 
-void unroll_cells(const Topology& topology, const Cells& cells, CoarseMesh& mesh) {
-  Unroller(topology, cells, mesh).run();
+void unroll_cells(const Topology& topology, const Cells& cells, std::span<const std::uint32_t> tips,
+                  CoarseMesh& mesh) {
+  Unroller(topology, cells, tips, mesh).run();
 }
 
 }  // namespace atlas

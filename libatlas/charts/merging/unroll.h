@@ -1,6 +1,7 @@
 // Internal: lays cells and charts flat that can be unrolled as paper can.
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "libatlas/charts/cells/cells.h"
@@ -18,7 +19,9 @@ namespace atlas {
 // than their cells are bent. Cells in one plane are included only where they touch bent ones;
 // elsewhere coplanar() and fans serve them as well. Curved cells are recognized by their first
 // vertices, so the time depends on how much there is to unroll.
-void unroll_cells(const Topology& topology, const Cells& cells, CoarseMesh& mesh);
+// `tips` are those of find_tips().
+void unroll_cells(const Topology& topology, const Cells& cells, std::span<const std::uint32_t> tips,
+                  CoarseMesh& mesh);
 
 // Lays a connected chart without densities flat, triangle by triangle. Returns false as soon as a
 // triangle does not fit its neighbours, or is thinner than min_altitude; nearly all charts that
