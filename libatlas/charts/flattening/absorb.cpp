@@ -49,16 +49,11 @@ constexpr Patience kWide{6, 12, 0.45, kNoIndex, 6};
 // fragments and small charts tried, left 7 % more charts in a twelfth less time (60 noisy meshes).
 constexpr Patience kNoisy{6, 4, 0.45, 200, 8};
 // A cone limit leaves many small charts, which are cheap to try.
-constexpr Patience kInCone{6, 3, 0.3, 0, 6};
+constexpr Patience kInCone{6, 3, 0.3, kNoIndex, 6};
 // Charts below kSmallArea of their piece's area are small. To remove a small chart, the rectangle
 // of the union may exceed the rectangles of both parts by kMostWaste of the piece's area.
 constexpr double kSmallArea = 0.015, kMostWaste = 0.01;
-constexpr double kSmallShare = 0.01;  // of all triangles: the largest fragment tried on smooth
-                                      // meshes
 constexpr double kWholeFill = 0.6;  // the share filled by a union of charts that are not fragments
-// A union may cost this many times the stretch that its seam is worth when cells are merged, whose
-// flattening is coarser. This saves 2 % of the charts for 1 % more L2 - 1 (228 meshes).
-constexpr double kWorth = 2.5, kFragmentWorth = 4;
 // The share that a union fills never rose by more than 1 / kSureFill when it was solved for. Of
 // 1600 unions this spares 260, with a seventh of the time, none of which would have succeeded (90
 // meshes).
@@ -158,8 +153,7 @@ class Absorber {
     const FlatChart& chart = charts_[k];
     const std::size_t size = chart.triangles.size();
     if (size < patience_.few || small(k)) return true;
-    return chart.fragment && (!topology_.calm_normals.empty() ||
-                              double(size) <= kSmallShare * double(all_triangles()));
+    return chart.fragment && !topology_.calm_normals.empty();
   }
 
   std::uint32_t absorb(std::uint32_t k) {
@@ -293,10 +287,9 @@ class Absorber {
     }
   }
 
-  // Whether a union is better than its parts. It must not cost more stretch than a multiple of what
-  // the seam that it saves is worth; the multiple is higher for fragments, which were meant to be
-  // one chart. A union may stretch as much as one of its parts, since on rough surfaces every chart
-  // exceeds the limit, and none could be joined (a third fewer charts on ten rough meshes).
+  // Whether a union is better than its parts. It must not cost more stretch than the seam that it
+  // saves is worth. A union may stretch as much as one of its parts, since on rough surfaces every
+  // chart exceeds the limit, and none could be joined (a third fewer charts on ten rough meshes).
   bool is_better(const FlatChart& both, std::uint32_t k, const ChartNeighbour& neighbour) const {
     const std::uint32_t into = neighbour.chart;
     const FlatChart &a = charts_[k], &b = charts_[into];
@@ -304,10 +297,7 @@ class Absorber {
     if (both.distortion.stretch_l2 > most_l2) return false;
     const Extent extent{both.distortion.uv_area, both.box_area()};
     if (!fills(k, into, extent, kMostWaste)) return false;
-    // The multiple of the seam's worth that the union may cost.
-    const double times = a.fragment || b.fragment ? kFragmentWorth : kWorth;
-    const double worth =
-        times * seam_worth_ * seam_weight(neighbour.edges) * std::sqrt(piece_area(k));
+    const double worth = seam_worth_ * seam_weight(neighbour.edges) * std::sqrt(piece_area(k));
     return (area_[k] + area_[into]) * both.excess() <=
            area_[k] * a.excess() + area_[into] * b.excess() + worth;
   }
