@@ -169,8 +169,8 @@ class Segmenter {
           straighten_borders(topology_, {rules, rings}, result_.partition, context_);
       carry_frames(topology_, moved, result_.frames);
       smooth_borders(topology_, rules, result_.partition, result_.frames);
-      if (i > 0) continue;
-      for (std::uint8_t& width : rings) width = static_cast<std::uint8_t>((width + 1) / 2);
+      if (i == 0)
+        for (std::uint8_t& width : rings) width = static_cast<std::uint8_t>((width + 1) / 2);
     }
   }
 

@@ -1,34 +1,14 @@
 #include <gtest/gtest.h>
 
-#include <numeric>
-
 #include "libatlas/charts/mesh/local_chart.h"
 #include "tests/charts/chart_checks.h"
+#include "tests/charts/whole_chart.h"
 
 namespace atlas {
 namespace {
 
-struct Whole {
-  explicit Whole(const test::Shape& shape) {
-    const test::Mesh mesh(shape);
-    Result<Topology> built = build_topology(mesh.view(), {}, {});
-    EXPECT_TRUE(built.ok());
-    topology = std::move(*built);
-    const std::size_t n = topology.triangle_count();
-    partition.chart.assign(n, 0);
-    partition.seams.assign(n, 0);
-    partition.local.resize(n);
-    triangles.resize(n);
-    std::iota(triangles.begin(), triangles.end(), 0u);
-  }
-
-  Topology topology;
-  Partition partition;
-  std::vector<std::uint32_t> triangles;
-};
-
 TEST(LocalChart, TheWholeMeshTakesItsLinksAsTheyAre) {
-  Whole mesh(test::grid(6, 5));
+  test::Whole mesh(test::grid(6, 5));
   LocalChart chart;
   chart.build(mesh.topology, mesh.partition, mesh.triangles);
   EXPECT_EQ(chart.opposite.data(), mesh.topology.opposite.data());
@@ -37,7 +17,7 @@ TEST(LocalChart, TheWholeMeshTakesItsLinksAsTheyAre) {
 }
 
 TEST(LocalChart, ACutChartHasLinksOfItsOwn) {
-  Whole mesh(test::grid(6, 5));
+  test::Whole mesh(test::grid(6, 5));
   std::uint32_t h = 0;
   while (mesh.topology.opposite[h] == kNoIndex) ++h;
   const std::uint32_t o = mesh.topology.opposite[h];
@@ -56,7 +36,7 @@ TEST(LocalChart, ACutChartHasLinksOfItsOwn) {
 // Large charts give up memory, but not the numbers of their parts.
 TEST(LocalChart, PartsOfAnyChartAreNumbered) {
   for (const int n : {4, 130}) {
-    Whole mesh(test::together(test::grid(n, n), test::moved(test::grid(n, n), 1, {3, 0, 0})));
+    test::Whole mesh(test::together(test::grid(n, n), test::moved(test::grid(n, n), 1, {3, 0, 0})));
     LocalChart chart;
     chart.build(mesh.topology, mesh.partition, mesh.triangles);
     EXPECT_EQ(chart.component_count, 2u);
@@ -67,7 +47,7 @@ TEST(LocalChart, PartsOfAnyChartAreNumbered) {
 TEST(LocalChart, PositionsAreRelativeToTheFirstOne) {
   test::Shape shape = test::grid(6, 5);
   for (Vec3f& p : shape.positions) p.x += 1000;
-  Whole mesh(shape);
+  test::Whole mesh(shape);
   LocalChart chart;
   chart.build(mesh.topology, mesh.partition, mesh.triangles);
   const LocalMesh view = chart.mesh();

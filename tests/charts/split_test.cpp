@@ -4,29 +4,19 @@
 #include <array>
 #include <cmath>
 #include <map>
-#include <numeric>
 #include <vector>
 
 #include "libatlas/charts/flattening/split.h"
 #include "tests/charts/chart_checks.h"
+#include "tests/charts/whole_chart.h"
 
 namespace atlas::test {
 namespace {
 
 // A strip of squares along x, as one chart.
-struct Strip {
-  explicit Strip(int length) {
-    const Mesh mesh(grid(length, 2, float(length), 2));
-    Result<Topology> built = build_topology(mesh.view(), {}, {});
-    EXPECT_TRUE(built.ok());
-    topology = std::move(*built);
-    const std::size_t n = topology.triangle_count();
-    partition.chart.assign(n, 0);
-    partition.seams.assign(n, 0);
-    partition.local.resize(n);
-    all.resize(n);
-    std::iota(all.begin(), all.end(), 0u);
-    chart.build(topology, partition, all);
+struct Strip : Whole {
+  explicit Strip(int length) : Whole(grid(length, 2, float(length), 2)) {
+    chart.build(topology, partition, triangles);
   }
   float x(std::uint32_t t) const {
     float sum = 0;
@@ -35,9 +25,6 @@ struct Strip {
     return sum;
   }
 
-  Topology topology;
-  Partition partition;
-  std::vector<std::uint32_t> all;
   LocalChart chart;
 };
 

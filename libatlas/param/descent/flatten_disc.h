@@ -12,8 +12,8 @@ struct FlattenOptions : ParamOptions {
   // The projection is used if its own stretch_999 and stretch_l2 are at most this; <= max_stretch.
   // 0: max_stretch.
   double max_planar_stretch = 0;
-  // Only the small places beyond the bound are relaxed. The whole
-  // is squeezed only if there are many of them. For rough surfaces.
+  // Only the small places beyond the bound are relaxed. The whole is squeezed only if there are
+  // many of them. For rough surfaces.
   bool local = false;
   // No face is flat: when the whole is squeezed, each triangle may give way as far as it helps.
   bool rough = false;
